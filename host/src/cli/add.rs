@@ -12,7 +12,7 @@
 //! ```
 //!
 //! Exit code 1, and no file, when the logs do not determine the values, or when the error on the
-//! motions held out is not reduced. `--json` prints what `handstand fit` prints, and `effects`, as
+//! motions held out is not reduced by a thousandth at least. `--json` prints what `handstand fit` prints, and `effects`, as
 //! `["delay@1"]`.
 
 use super::{ExitStatus, Talk, fit, input};
@@ -43,7 +43,7 @@ pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let candidates = candidates_named(&args.effects, &model)?;
-    let split = args.fit.motions(&model, &args.logs)?;
+    let split = args.fit.motions(&model, &args.logs, talk)?;
     let horizon = args.fit.judging.run.horizon;
     let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
     let (path, progress) = (&args.model, talk.progress());

@@ -16,7 +16,7 @@
 
 use super::{ExitStatus, Talk, input, show};
 use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free_parameters};
-use handstand::log::{LogRequest, expanded, read};
+use handstand::log::{LogRequest, expanded};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::{Model, Result};
@@ -46,11 +46,13 @@ pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
     let sessions = args.logs.iter().map(|log| {
         Ok(DriftSession {
             name: log.to_string(),
-            motions: read(std::slice::from_ref(log), &model.log)?,
+            motions: input::motions(std::slice::from_ref(log), &model.log, talk)?,
         })
     });
     let sessions: Vec<DriftSession> = sessions.collect::<Result<_>>()?;
-    let found = drift(&model, &free, &sessions, args.run.horizon);
+    let motions = sessions.iter().flat_map(|session| &session.motions);
+    let horizon = args.run.of(&model, motions)?;
+    let found = drift(&model, &free, &sessions, horizon);
     talk.result(&serde_json::to_value(&found).unwrap_or_default(), || {
         said(&found)
     })?;

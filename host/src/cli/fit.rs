@@ -40,7 +40,7 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = input::text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let free = free_parameters(&model, &args.free)?;
-    let split = args.fit.motions(&model, &args.logs)?;
+    let split = args.fit.motions(&model, &args.logs, talk)?;
     let horizon = args.fit.judging.run.horizon;
     let refitted = refit(&model, &free, &split, horizon, &talk.progress());
     let refitted = match refitted {

@@ -1,9 +1,10 @@
 //! Arguments that several commands take.
 
+use super::Talk;
 use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
 use handstand::fitting::{Horizon, free_parameters};
-use handstand::log::{LogRequest, LogSet, Motion, Split};
-use handstand::model::ParameterPath;
+use handstand::log::{LogFinding, LogRequest, LogSet, Motion, Split, read_with_findings};
+use handstand::model::{LogColumns, ParameterPath};
 use handstand::output::vacant;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
@@ -16,6 +17,23 @@ pub struct RunLength {
     /// errors grow faster
     #[arg(long, value_name = "SECONDS", value_parser = horizon, allow_negative_numbers = true)]
     pub horizon: Option<Horizon>,
+}
+
+impl RunLength {
+    /// The horizon that is asked for, if one is, for these motions.
+    ///
+    /// # Errors
+    /// Windows of too few samples.
+    pub fn of<'a>(
+        &self,
+        model: &Model,
+        motions: impl IntoIterator<Item = &'a Motion>,
+    ) -> Result<Option<Horizon>> {
+        if let Some(horizon) = self.horizon {
+            horizon.check(model, motions)?;
+        }
+        Ok(self.horizon)
+    }
 }
 
 /// The controller of a robot that balances.
@@ -77,13 +95,35 @@ pub struct RefitArgs {
 
 impl RefitArgs {
     /// Reads the motions to fit and those to judge by; the new model's name is checked before that
-    /// work.
+    /// work, and the horizon after it.
     ///
     /// # Errors
-    /// As [`vacant`] and [`LogSet::read`].
-    pub fn motions(&self, model: &Model, logs: &[LogRequest]) -> Result<Split> {
+    /// As [`vacant`], [`LogSet::read`] and [`RunLength::of`].
+    pub fn motions(&self, model: &Model, logs: &[LogRequest], talk: &Talk) -> Result<Split> {
         vacant(&self.output, self.force)?;
-        log_set(logs, &self.judging.holdout).read(&model.log)
+        let logs = log_set(logs, &self.judging.holdout);
+        let (split, findings) = logs.read_with_findings(&model.log)?;
+        warn(&findings, talk);
+        let motions = split.training.iter().chain(&split.held_out);
+        self.judging.run.of(model, motions)?;
+        Ok(split)
+    }
+}
+
+/// The motions of logs; what is left out of them is said.
+///
+/// # Errors
+/// As [`read_with_findings`].
+pub fn motions(logs: &[LogRequest], columns: &LogColumns, talk: &Talk) -> Result<Vec<Motion>> {
+    let (motions, findings) = read_with_findings(logs, columns)?;
+    warn(&findings, talk);
+    Ok(motions)
+}
+
+/// Says what is left out of logs.
+pub fn warn(findings: &[LogFinding], talk: &Talk) {
+    for finding in findings {
+        talk.say(&finding.to_string());
     }
 }
 

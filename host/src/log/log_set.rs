@@ -1,8 +1,9 @@
 //! Logs as named: those to learn from, and those to judge by.
 
+use super::LogFinding;
 use super::folder::expanded;
 use super::holdout::Split;
-use super::read::read;
+use super::read::read_with_findings;
 use super::request::LogRequest;
 use super::same_rows::SizedRequest;
 use crate::error::{Error, Result};
@@ -28,11 +29,20 @@ impl LogSet {
     /// # Errors
     /// Logs that cannot be read, or rows in both.
     pub fn read(&self, columns: &LogColumns) -> Result<Split> {
+        Ok(self.read_with_findings(columns)?.0)
+    }
+
+    /// As [`LogSet::read`], with a warning for each log of which motions are left out.
+    ///
+    /// # Errors
+    /// As [`LogSet::read`].
+    pub fn read_with_findings(&self, columns: &LogColumns) -> Result<(Split, Vec<LogFinding>)> {
         self.told_apart()?;
-        Ok(Split {
-            training: read(&self.training, columns)?,
-            held_out: read(&self.held_out, columns)?,
-        })
+        let (training, mut findings) = read_with_findings(&self.training, columns)?;
+        let (held_out, more) = read_with_findings(&self.held_out, columns)?;
+        findings.extend(more);
+        let split = Split { training, held_out };
+        Ok((split, findings))
     }
 
     /// Refuses rows that are both learned from and judged by.

@@ -5,8 +5,9 @@ use super::folder::expanded;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::{Before, LogRow};
+use super::short::ShortMotions;
 use super::visit::visit;
-use super::{Motion, MotionSource, bam};
+use super::{LogFinding, Motion, MotionSource, bam};
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
 use std::collections::HashMap;
@@ -21,32 +22,50 @@ pub const LEAST_ROWS: usize = 10;
 /// `a.csv`, `a.csv:26-139`, `a.csv#3`; pieces between gaps count from 0. Rows outside a range are
 /// not judged.
 ///
+/// A motion of fewer than [`LEAST_ROWS`] rows is left out, which [`read_with_findings`] says.
+///
 /// An empty field is a gap. An angle or a rate is not a number there; an input, the supply and
 /// whether torque is on hold the value before. A motion begins when that is known, and all its
 /// inputs are or torque is off.
 ///
 /// # Errors
 /// Columns without any value, unreadable cells and rows, time that does not increase, a payload or
-/// orientation that changes within a motion, fewer than [`LEAST_ROWS`] rows; each with file, line,
-/// column and remedy.
+/// orientation that changes within a motion, a log without any motion of [`LEAST_ROWS`] rows; each
+/// with file, line, column and remedy.
 pub fn read(requests: &[LogRequest], columns: &LogColumns) -> Result<Vec<Motion>> {
-    let mut motions = Vec::new();
+    Ok(read_with_findings(requests, columns)?.0)
+}
+
+/// As [`read`], with a warning for each log of which motions are left out; [`super::check()`] finds
+/// the same, and more.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with_findings(
+    requests: &[LogRequest],
+    columns: &LogColumns,
+) -> Result<(Vec<Motion>, Vec<LogFinding>)> {
+    let (mut motions, mut findings) = (Vec::new(), Vec::new());
     let mut bench = BamBench::default();
     for request in &expanded(requests)? {
         if request.is_json() {
             motions.push(bam::read(request, columns.arm, &mut bench)?);
         } else {
-            motions.extend(read_rows(request, columns)?);
+            let (long, short) = read_rows(request, columns)?;
+            motions.extend(long);
+            findings.extend(short.warning(&request.path));
         }
     }
-    Ok(motions)
+    Ok((motions, findings))
 }
 
-fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> {
+/// The motions of a log that are long enough, and those that are not.
+fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<(Vec<Motion>, ShortMotions)> {
     let mut cutter = Cutter {
         request,
         columns,
         pieces: Vec::new(),
+        short: ShortMotions::default(),
         left_out: LeftOut::default(),
     };
     let facts = visit(
@@ -60,22 +79,18 @@ fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<Vec<Motion>> 
     if let Some(reason) = request.beyond(facts.rows) {
         return Err(Error::refused(Place::file(&request.path), reason));
     }
-    let motions = cutter.finish(&facts.sha256)?.into_iter();
-    motions.map(|motion| moved(motion, columns)).collect()
-}
-
-/// The motion with its columns moved in time, refused where too little is left of it.
-fn moved(motion: Motion, columns: &LogColumns) -> Result<Motion> {
-    let motion = motion.shifted(columns);
-    if motion.len() >= LEAST_ROWS {
-        return Ok(motion);
+    let (motions, mut short) = cutter.finish(&facts.sha256)?;
+    let mut long = Vec::with_capacity(motions.len());
+    for motion in motions.into_iter().map(|motion| motion.shifted(columns)) {
+        match motion.len() < LEAST_ROWS {
+            true => short.take(motion.source.lines, motion.len()),
+            false => long.push(motion),
+        }
     }
-    let place = Place {
-        line: Some(motion.source.lines.0),
-        ..Place::file(&motion.source.path)
-    };
-    let rows = motion.len();
-    Err(Error::refused(place, LogReason::TooShort { rows }))
+    match short.refusal(&request.path).filter(|_| long.is_empty()) {
+        Some((place, reason)) => Err(Error::refused(place, reason)),
+        None => Ok((long, short)),
+    }
 }
 
 struct Piece {
@@ -103,6 +118,7 @@ struct Cutter<'a> {
     request: &'a LogRequest,
     columns: &'a LogColumns,
     pieces: Vec<Piece>,
+    short: ShortMotions,
     left_out: LeftOut,
 }
 
@@ -169,28 +185,21 @@ impl Cutter<'_> {
         Ok(())
     }
 
-    /// Refuses the motion just ended if it is too short.
+    /// Fills the gaps of the motion just ended, or leaves it out if it is too short.
     fn close(&mut self) -> Result<()> {
-        if let Some(piece) = self.pieces.last_mut() {
+        let is_short = |piece: &mut Piece| piece.motion.len() < LEAST_ROWS;
+        if let Some(Piece { motion, .. }) = self.pieces.pop_if(is_short) {
+            self.short.take(motion.source.lines, motion.len());
+        } else if let Some(piece) = self.pieces.last_mut() {
             let place = Place::file(&self.request.path);
             let name = self.request.name();
             filled(&mut piece.motion, self.columns, &name)
                 .map_err(|reason| Error::refused(place, reason))?;
         }
-        match self.pieces.last() {
-            Some(Piece { motion, .. }) if motion.len() < LEAST_ROWS => {
-                let place = Place {
-                    line: Some(motion.source.lines.0),
-                    ..Place::file(&self.request.path)
-                };
-                let rows = motion.len();
-                Err(Error::refused(place, LogReason::TooShort { rows }))
-            }
-            _ => Ok(()),
-        }
+        Ok(())
     }
 
-    fn finish(mut self, sha256: &str) -> Result<Vec<Motion>> {
+    fn finish(mut self, sha256: &str) -> Result<(Vec<Motion>, ShortMotions)> {
         if self.pieces.is_empty() {
             let place = Place::file(&self.request.path);
             let reason = self.left_out.reason(self.columns, &self.request.name());
@@ -218,7 +227,7 @@ impl Cutter<'_> {
             };
             motion
         });
-        Ok(named.collect())
+        Ok((named.collect(), self.short))
     }
 }
 

@@ -6,6 +6,11 @@ use super::reading_limit::LARGEST_READING;
 use crate::error::Reason;
 use std::borrow::Cow;
 
+/// What a field with a time stamp must be.
+pub(super) const STAMP: &str = "a time stamp such as 2026-03-01T12:00:00.5Z";
+/// What a flag must be.
+pub(super) const FLAG: &str = "0 or 1";
+
 /// What is wrong with a file, a row, a field, or the order of rows of a log.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LogReason {
@@ -72,6 +77,22 @@ pub enum LogReason {
         found: String,
         /// What it must be.
         expected: &'static str,
+    },
+    /// A time stamp where the model declares numbers.
+    #[error("{column}: {} is a time stamp, not a number", quoted(found))]
+    TimeStamp {
+        /// The column.
+        column: String,
+        /// What the field holds.
+        found: String,
+    },
+    /// A column hardly a row of which can be read.
+    #[error("{cell}; and {more} more {} like it", if *more == 1 { "line" } else { "lines" })]
+    WrongColumn {
+        /// What is wrong with the first of its cells.
+        cell: Box<LogReason>,
+        /// Rows of which the same is wrong, beside the first.
+        more: usize,
     },
     /// A number that no sensor of a joint gives.
     #[error(
@@ -243,6 +264,8 @@ impl Reason for LogReason {
                 "the model reads this column: delete the line, or leave it out by a row range \
                  such as log.csv:26-139"
             }
+            TimeStamp { .. } => "write unit = \"iso8601\" for this column in the model's [log]",
+            WrongColumn { cell, .. } => return of_column(cell),
             NoReading { .. } => {
                 "check the column's unit in the model's [log], or in its name where there is no \
                  model; of a broken cell, delete the value, which leaves a gap"
@@ -284,6 +307,32 @@ impl Reason for LogReason {
             }
         })
     }
+}
+
+/// What to do about a column all of whose cells are wrong as this one is.
+fn of_column(cell: &LogReason) -> Cow<'_, str> {
+    let WrongField {
+        found, expected, ..
+    } = cell
+    else {
+        return cell.remedy();
+    };
+    let is_number = found.replacen(',', ".", 1).parse::<f64>().is_ok();
+    Cow::Borrowed(match *expected {
+        _ if found.is_empty() => "record this column, or name another one in the model's [log]",
+        STAMP if is_number => {
+            "write the unit of these numbers for this column in the model's [log]: \
+             unit = \"s\", \"ms\", \"us\" or \"ns\""
+        }
+        STAMP => {
+            "save the times as such stamps, or as numbers with their unit in the model's [log]"
+        }
+        FLAG => "save this column as 0 and 1, or take it out of the model's [log]",
+        _ => {
+            "name a column of numbers in the model's [log], or save this one as numbers with a \
+             decimal point"
+        }
+    })
 }
 
 fn meant(nearest: &Option<String>) -> String {

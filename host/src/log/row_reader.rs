@@ -3,10 +3,10 @@
 use super::header::{LogCell, LogHeader, fields, number};
 use super::iso::iso_ns;
 use super::reading_limit::beyond_readings;
-use super::reason::LogReason;
+use super::reason::{FLAG, LogReason, STAMP};
 use super::row::{Fields, LogRow};
 use crate::error::{Error, Place, Result};
-use crate::model::{Column, ColumnMean, LogColumns};
+use crate::model::{Column, ColumnMean, Dimension, LogColumns};
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::path::Path;
@@ -232,6 +232,7 @@ impl Cells<'_> {
         match written.map(|written| column.to_si(written)) {
             Some(value) if value.is_finite() => self.reading(cell, column, value),
             Some(_) => Err(self.refuse(cell, "finite")),
+            None if column.unit.dimension == Dimension::Time => Err(self.no_time(cell)),
             None => Err(self.refuse(cell, "a number")),
         }
     }
@@ -255,9 +256,8 @@ impl Cells<'_> {
 
     /// Seconds since the file's first stamp.
     fn stamp_s(&self, cell: &LogCell, index: usize) -> Result<f64> {
-        let expected = "a time stamp such as 2026-03-01T12:00:00.5Z";
-        let stamp_ns = iso_ns(&self.text(&LogCell::Field(index)))
-            .ok_or_else(|| self.refuse(cell, expected))?;
+        let stamp_ns =
+            iso_ns(&self.text(&LogCell::Field(index))).ok_or_else(|| self.refuse(cell, STAMP))?;
         let first_ns = self.reader.first_ns.get().unwrap_or(stamp_ns);
         self.reader.first_ns.set(Some(first_ns));
         Ok(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
@@ -281,7 +281,7 @@ impl Cells<'_> {
         match (text.as_str(), number(&text, self.reader.separator)) {
             ("true", _) | (_, Some(1.0)) => Ok(Some(true)),
             ("false", _) | (_, Some(0.0)) => Ok(Some(false)),
-            _ => Err(self.refuse(cell, "0 or 1")),
+            _ => Err(self.refuse(cell, FLAG)),
         }
     }
 
@@ -294,6 +294,19 @@ impl Cells<'_> {
             },
             LogCell::Constant(value, _) => value.to_string().into(),
         }
+    }
+
+    /// A time that is no number: a stamp needs no more than another unit.
+    fn no_time(&self, cell: &LogCell) -> Error {
+        let found = self.text(cell);
+        if iso_ns(&found).is_none() {
+            return self.refuse(cell, "a number");
+        }
+        let reason = LogReason::TimeStamp {
+            column: self.name(cell).to_string(),
+            found: found.into(),
+        };
+        Error::refused(self.place(cell), reason)
     }
 
     fn refuse(&self, cell: &LogCell, expected: &'static str) -> Error {

@@ -1,7 +1,7 @@
 //! Columns whose samples were taken at another time than their rows say.
 
 use super::Motion;
-use crate::model::LogColumns;
+use crate::model::{JointColumns, LogColumns};
 
 impl Motion {
     /// Moves columns in time by what `columns` says, s: values between samples by straight lines.
@@ -62,6 +62,14 @@ impl Motion {
             turned: self.turned,
         }
     }
+}
+
+/// By how much the earliest and the latest of all columns is moved, s: at most 0, at least 0.
+pub(super) fn ends_s(columns: &LogColumns) -> (f64, f64) {
+    let shifts_s = columns.joints.iter().flat_map(JointColumns::shifts_s);
+    shifts_s.fold((0.0, 0.0), |(earliest, latest): (f64, f64), shift_s| {
+        (earliest.min(shift_s), latest.max(shift_s))
+    })
 }
 
 /// The values at each row's time, where they were taken `shift_s` later than written; the first or

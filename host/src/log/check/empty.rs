@@ -49,6 +49,11 @@ impl<'a> EmptyColumns<'a> {
         }
     }
 
+    /// Begins a motion.
+    pub fn begin(&mut self) {
+        *self = EmptyColumns::new(self.columns, std::mem::take(&mut self.file));
+    }
+
     /// Ends the motion: refuses what it has no value of.
     pub fn close(&mut self, place: &Place, findings: &mut Findings) {
         let mut refuse = |column: String| {
@@ -69,6 +74,6 @@ impl<'a> EmptyColumns<'a> {
         if let Some(supply) = self.columns.supply.as_ref().filter(|_| !self.supply) {
             refuse(supply.name.clone());
         }
-        *self = EmptyColumns::new(self.columns, std::mem::take(&mut self.file));
+        self.begin();
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Findings of one kind shown per file; the rest are counted.
-const SHOWN: usize = 20;
+pub(super) const SHOWN: usize = 20;
 
 /// How many findings of a kind are shown before the one that counts the rest: none where all have
 /// one cause, which one remedy mends.
@@ -41,9 +41,9 @@ impl Severity {
 /// One thing found in a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogFinding {
-    /// What it is about: `file`, `cell`, `range`, `none`, `short`, `time`, `jump`, `gap`, `jitter`,
-    /// `payload`, `turned`, `wrap`, `stuck`, `held`, `outlier`, `extreme`, `step`, `missing`,
-    /// `unobserved`, `unit`, `relation`, `supply`, `excitation`; of
+    /// What it is about: `file`, `cell`, `column`, `range`, `none`, `short`, `time`, `jump`, `gap`,
+    /// `jitter`, `payload`, `turned`, `wrap`, `stuck`, `held`, `outlier`, `extreme`, `step`,
+    /// `missing`, `unobserved`, `unit`, `relation`, `supply`, `excitation`; of
     /// [`crate::diagnose::conventions`] `sign`, `zero`, `unit`, `angles`, `drive`, `time_unit`,
     /// `time_shift`, `stalled` or `clipped`.
     pub kind: &'static str,
@@ -115,6 +115,18 @@ impl Findings {
     pub fn refuse(&mut self, kind: &'static str, place: Place, reason: &dyn Reason) {
         let words = (reason.to_string(), &*reason.remedy());
         self.add(kind, Severity::Refuse, Some(place), words);
+    }
+
+    /// Counts so many more of a kind that has been shown often enough.
+    pub fn count(&mut self, kind: &'static str, more: usize) {
+        if more > 0 {
+            self.counts.entry(kind).or_default().0 += more;
+        }
+    }
+
+    /// Adds what a file has at most once.
+    pub fn extend(&mut self, findings: impl IntoIterator<Item = LogFinding>) {
+        self.list.extend(findings);
     }
 
     /// Adds a finding, or counts it if its kind has been shown often enough.

@@ -15,6 +15,7 @@ mod outlier;
 mod relation;
 mod sampling;
 mod stretch;
+mod wrong_cells;
 
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,8 @@ use super::read::LeftOut;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::LogRow;
+use super::shift::ends_s;
+use super::short::{RowsLeft, ShortMotions};
 use super::{LEAST_ROWS, bam, expanded, visit};
 use crate::error::{Error, Place, Result, words};
 use crate::model::Model;
@@ -35,6 +38,7 @@ use finding::Findings;
 use joint::JointCheck;
 use relation::Relations;
 use sampling::Sampling;
+use wrong_cells::WrongCells;
 
 /// Judges the requested logs against the model that is to explain them.
 ///
@@ -61,11 +65,12 @@ pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<LogFinding>> 
                         file.take(row);
                         Ok(())
                     }
-                    (true, Err(error)) => file.broken("cell", error),
+                    (true, Err(error)) => file.unread(error),
                 },
             )
             .map(|facts| facts.rows)
         };
+        file.close_cells();
         match read {
             Ok(rows) => file.finish(rows),
             Err(error) => file.broken("file", error)?,
@@ -87,7 +92,15 @@ struct FileCheck<'a> {
     findings: &'a mut Findings,
     excitation: &'a mut ExcitationCheck,
     previous: Option<LogRow>,
-    rows_in_motion: usize,
+    /// The first rows of a motion, until it is long enough to be judged.
+    held: Vec<LogRow>,
+    rows_left: RowsLeft,
+    short: ShortMotions,
+    /// Motions that are long enough.
+    motions: usize,
+    cells: WrongCells,
+    /// Whether a whole column could not be read.
+    lacks_column: bool,
     left_out: LeftOut,
     empty: EmptyColumns<'a>,
     sampling: Sampling,
@@ -108,7 +121,16 @@ impl<'a> FileCheck<'a> {
             findings,
             excitation,
             previous: None,
-            rows_in_motion: 0,
+            held: Vec::new(),
+            rows_left: RowsLeft::new(match request.is_json() {
+                // Nothing of it is moved.
+                true => (0.0, 0.0),
+                false => ends_s(&model.log),
+            }),
+            short: ShortMotions::default(),
+            motions: 0,
+            cells: WrongCells::default(),
+            lacks_column: false,
             left_out: LeftOut::default(),
             empty: EmptyColumns::new(&model.log, request.name()),
             sampling: Sampling::default(),
@@ -128,6 +150,18 @@ impl<'a> FileCheck<'a> {
         }
     }
 
+    /// A row that cannot be read.
+    fn unread(&mut self, error: Error) -> Result<()> {
+        match self.cells.take(error) {
+            Ok(()) => Ok(()),
+            Err(error) => self.broken("cell", error),
+        }
+    }
+
+    fn close_cells(&mut self) {
+        self.lacks_column = self.cells.close(self.findings);
+    }
+
     fn json(&mut self) -> Result<usize> {
         let arm = self.model.log.arm;
         let motion = bam::read(self.request, arm, &mut BamBench::default())?;
@@ -138,6 +172,7 @@ impl<'a> FileCheck<'a> {
     }
 
     fn take(&mut self, row: &LogRow) {
+        self.cells.read();
         if row.position_rad.len() != self.joints.len() {
             return;
         }
@@ -156,17 +191,37 @@ impl<'a> FileCheck<'a> {
         if !forward {
             return;
         }
-        self.rows_in_motion += 1;
+        self.rows_left.take(row.line, row.time_s);
         self.empty.take(row);
+        self.hold_or_judge(row);
+        match &mut self.previous {
+            Some(previous) => previous.clone_from(row),
+            None => self.previous = Some(row.clone()),
+        }
+    }
+
+    /// Judges a row once its motion is long enough; of one that is not, no row is judged.
+    fn hold_or_judge(&mut self, row: &LogRow) {
+        if self.held.len() == LEAST_ROWS {
+            return self.judge(row, false);
+        }
+        self.held.push(row.clone());
+        if self.held.len() == LEAST_ROWS {
+            // Stays as long as it is: so it says that the motion is long enough.
+            let held = std::mem::take(&mut self.held);
+            for (index, row) in held.iter().enumerate() {
+                self.judge(row, index == 0);
+            }
+            self.held = held;
+        }
+    }
+
+    fn judge(&mut self, row: &LogRow, fresh: bool) {
         for joint in 0..self.joints.len() {
             self.joints[joint].take(row, joint, fresh, self.findings);
         }
         self.relations.take(row, fresh);
         self.excitation.take(row, fresh);
-        match &mut self.previous {
-            Some(previous) => previous.clone_from(row),
-            None => self.previous = Some(row.clone()),
-        }
     }
 
     /// Whether a new motion begins with `row`; if not, it must fit the present one.
@@ -189,16 +244,29 @@ impl<'a> FileCheck<'a> {
         false
     }
 
+    /// Ends a motion: one that is too short is left out.
     fn close_motion(&mut self) {
-        let rows = std::mem::take(&mut self.rows_in_motion);
-        if rows > 0 {
-            let place = Place::file(&self.request.path);
-            self.empty.close(&place, self.findings);
+        self.held.clear();
+        match self.rows_left.close() {
+            None => {}
+            Some((lines, rows)) if rows < LEAST_ROWS => {
+                self.short.take(lines, rows);
+                self.empty.begin();
+            }
+            Some(_) => {
+                self.motions += 1;
+                let place = Place::file(&self.request.path);
+                self.empty.close(&place, self.findings);
+            }
         }
-        if let Some(last) = self.previous.as_ref().filter(|_| rows < LEAST_ROWS) {
-            let place = last.place(last.fields.time);
-            self.findings
-                .refuse("short", place, &LogReason::TooShort { rows });
+    }
+
+    /// Refuses a file of which nothing is long enough; else only warns of what is not.
+    fn close_short(&mut self) {
+        let path = &self.request.path;
+        match self.short.refusal(path).filter(|_| self.motions == 0) {
+            Some((place, reason)) => self.findings.refuse("short", place, &reason),
+            None => self.findings.extend(self.short.warning(path)),
         }
     }
 
@@ -216,6 +284,8 @@ impl<'a> FileCheck<'a> {
             let name = self.request.name();
             match self.left_out.reason(&self.model.log, &name) {
                 Some(reason) => self.findings.refuse("missing", place, &reason),
+                // That says all.
+                None if self.lacks_column => {}
                 None => {
                     let remedy = "see the rows refused, or record again";
                     let reason = words("no sample could be read", remedy);
@@ -225,6 +295,7 @@ impl<'a> FileCheck<'a> {
             return;
         }
         self.close_motion();
+        self.close_short();
         let unit = self.model.log.time.unit;
         self.sampling.judge(&place, unit, self.findings);
         for (joint, check) in self.joints.iter_mut().enumerate() {

@@ -1,6 +1,8 @@
 //! The check finds each fault, and warns of nothing in a good log.
 
 mod motions;
+mod short;
+mod wrong_cells;
 
 use super::*;
 use crate::log::tests::fixture::{columns, first, model, motion, position_drive};

@@ -85,3 +85,78 @@ fn a_range_leaves_out_broken_rows() {
     };
     assert_eq!(read(&[part], &columns()).unwrap()[0].len(), 11);
 }
+
+/// Segments of so many rows each, with their names; a second lies between them.
+fn segments(rows: &[(&str, usize)]) -> String {
+    let mut text = String::from("seg,t_s,q,u\n");
+    for (index, (segment, rows)) in rows.iter().enumerate() {
+        let row = |k| index as f64 + 0.01 * f64::from(k);
+        (0..*rows as u32).for_each(|k| text += &format!("{segment},{},0,0\n", row(k)));
+    }
+    text
+}
+
+fn read_told(text: &str, columns: &LogColumns) -> (Vec<usize>, Vec<String>) {
+    let log = file(text.as_bytes(), ".csv");
+    let requests = [LogRequest::whole(log.path())];
+    let (motions, findings) = read_with_findings(&requests, columns).unwrap();
+    assert!(findings.iter().all(|f| f.severity == Severity::Warn));
+    let path = log.path().display().to_string();
+    let said = |finding: &LogFinding| finding.statement().replace(&path, "f");
+    (
+        motions.iter().map(Motion::len).collect(),
+        findings.iter().map(said).collect(),
+    )
+}
+
+#[test]
+fn a_short_motion_costs_itself_and_is_told_once_a_file() {
+    let mut by_segment = columns();
+    by_segment.segment = Some("seg".into());
+    let mut by_gap = columns();
+    by_gap.split_at_gap_s = Some(0.5);
+    let text = segments(&[("x", 1), ("a", 20), ("y", 3), ("b", 20), ("z", 9)]);
+    let said = "f:2: 3 motions of 1 to 9 rows (lines 2, 23-25, 46-54) are left out; 10 rows are \
+                the least";
+    for columns in [&by_segment, &by_gap] {
+        let (rows, findings) = read_told(&text, columns);
+        assert_eq!((rows, findings), (vec![20, 20], vec![said.to_string()]));
+    }
+    let (_, findings) = read_told(&segments(&[("a", 20), ("b", 20)]), &by_segment);
+    assert!(findings.is_empty(), "{findings:?}");
+    // A stray row need not hold what a motion must.
+    let (rows, _) = read_told(&text.replacen("x,0,0,0", "x,0,,0", 1), &by_segment);
+    assert_eq!(rows, [20, 20]);
+    // What moving a column leaves of 11 rows is too short.
+    first(&mut by_segment.joints[0].input).shift_s = 0.025;
+    let (rows, findings) = read_told(&segments(&[("a", 11), ("b", 20)]), &by_segment);
+    assert_eq!(rows, [17]);
+    assert!(
+        findings[0].contains("a motion of 8 rows (lines 2-12)"),
+        "{findings:?}"
+    );
+}
+
+#[test]
+fn a_log_of_nothing_but_short_motions_is_refused() {
+    let mut columns = columns();
+    columns.segment = Some("seg".into());
+    let text = segments(&[("x", 2), ("y", 9)]);
+    let (line, _, what) = refused(&text, &columns);
+    assert_eq!(
+        (line, &*what),
+        (Some(2), "a motion of 2 rows; 10 are the least")
+    );
+    let log = file(segments(&[("a", 20)]).as_bytes(), ".csv");
+    let few = LogRequest {
+        rows: Some((4, 6)),
+        ..LogRequest::whole(log.path())
+    };
+    let error = read(&[few], &columns).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .ends_with(":6: a motion of 3 rows; 10 are the least"),
+        "{error}"
+    );
+}

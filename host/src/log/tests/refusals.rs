@@ -210,3 +210,13 @@ fn a_reason_can_be_matched_on() {
     let reason = LogReason::TimeNotIncreasing { time_s, previous_s };
     assert_eq!(error.reason(), Some(&reason));
 }
+
+#[test]
+fn a_stamp_among_numbers_names_the_unit_that_it_has() {
+    let stamped = rows("t_s,q,u", ',').replace("\n0.", "\n2024-05-01T10:00:00.");
+    let log = file(stamped.as_bytes(), ".csv");
+    let error = read(&[LogRequest::whole(log.path())], &columns()).unwrap_err();
+    let said = ":2:1: t_s: '2024-05-01T10:00:00.00' is a time stamp, not a number";
+    assert!(error.to_string().ends_with(said), "{error}");
+    assert!(error.remedy().unwrap().contains("unit = \"iso8601\""));
+}
