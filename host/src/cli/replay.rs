@@ -16,12 +16,15 @@
 //! without being told): a line that breaks lets the robot down, and any of its buttons stops it.
 //! `--adapter` passes the packets through it instead, and neither does.
 //!
+//! A servo that does not answer ends it before anything moves, with exit code 4; one that falls
+//! silent on the way is warned of, with the share of the samples it missed.
+//!
 //! Servos of Protocol 2.0 stop by their own bus watchdog when the line breaks, unless
 //! `--no-watchdog`.
 //!
 //! `--json` prints `way` (`stream` or `adapter`), `watchdog` (whether theirs is on), `samples`,
 //! `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad` (to the positions recorded),
-//! `stopped` (why, or null).
+//! `silent` (servos that fell silent: `servo`, `missed_share`), `stopped` (why, or null).
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;
@@ -104,15 +107,21 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
-    report(&followed, way, talk)
+    report(&followed, &recording.ids, way, talk)
 }
 
-fn report(followed: &FollowedMotion, way: SourceKind, talk: &Talk) -> Result<ExitStatus> {
+fn report(
+    followed: &FollowedMotion,
+    ids: &[u8],
+    way: SourceKind,
+    talk: &Talk,
+) -> Result<ExitStatus> {
     let (tracking, repeat) = (followed.tracking.value(), followed.repeat.value());
     let stopped = followed.stopped.as_ref().map(|why| match why {
         MotionStop::Interrupted => "Ctrl-C",
         MotionStop::Danger(why) => why,
     });
+    let silent = silent(followed, ids);
     let data = json!({
         "way": if way == SourceKind::Stream { "stream" } else { "adapter" },
         "watchdog": way == SourceKind::Group { watchdog: true },
@@ -120,6 +129,10 @@ fn report(followed: &FollowedMotion, way: SourceKind, talk: &Talk) -> Result<Exi
         "seconds": followed.tally.seconds(),
         "tracking_rms_rad": tracking,
         "repeat_rms_rad": repeat,
+        "silent": silent
+            .iter()
+            .map(|(id, share)| json!({ "servo": id, "missed_share": share }))
+            .collect::<Vec<_>>(),
         "stopped": stopped,
     });
     let milli = |rad: Option<f64>| or_dash(rad, |rad| format!("{:.1} mrad", rad * 1e3));
@@ -127,6 +140,13 @@ fn report(followed: &FollowedMotion, way: SourceKind, talk: &Talk) -> Result<Exi
         let (tracking, repeat) = (milli(tracking), milli(repeat));
         format!("to the goals: {tracking} rms\nto the recording: {repeat} rms")
     })?;
+    for (id, share) in silent {
+        talk.say(&format!(
+            "warning: servo {id} did not answer in {:.1} % of the samples, which the errors leave \
+             out; `handstand bus doctor` finds the cause",
+            100.0 * share
+        ));
+    }
     match stopped {
         None => Ok(ExitStatus::Done),
         Some(why) => {
@@ -134,4 +154,12 @@ fn report(followed: &FollowedMotion, way: SourceKind, talk: &Talk) -> Result<Exi
             Ok(ExitStatus::Stopped)
         }
     }
+}
+
+/// Servos that fell silent, each with the share of the samples that it missed.
+fn silent(followed: &FollowedMotion, ids: &[u8]) -> Vec<(u8, f64)> {
+    let servos = ids.iter().zip(&followed.silences);
+    servos
+        .filter_map(|(id, silence)| Some((*id, silence.share()?)))
+        .collect()
 }

@@ -136,6 +136,28 @@ fn a_low_supply_is_refused_by_the_cm5() {
     assert!(ran.stderr.contains("the supply is too low"), "{ran:?}");
 }
 
+#[test]
+fn servos_that_do_not_answer_are_named_whichever_way_they_are_reached() {
+    let bench = Bench::new();
+    bench.put(
+        "goals.csv",
+        "time_s,goal1_rad,goal2_rad,goal11_rad,goal12_rad\n0,0,0,0,0\n1,0.1,-0.1,0.1,-0.1\n",
+    );
+    for port in ["sim-cm5:ids=1-2,delay=0", "sim:ids=1-2,delay=0"] {
+        let ran = bench.run(&format!("replay goals.csv --yes --port {port} --json"));
+        assert_eq!(ran.code, Some(4), "{port}: {ran:?}");
+        assert!(ran.stderr.contains("servo 11: no status packet"), "{ran:?}");
+        assert!(ran.stderr.contains("bus doctor"), "{ran:?}");
+    }
+    // A line that loses most answers: the errors are of what is left.
+    let ran = bench.run("replay goals.csv --yes --port sim-cm5:delay=0,drop=0.5 --json");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let silent = &ran.json()["silent"][0];
+    assert_eq!(silent["servo"], 1, "{silent}");
+    assert!(silent["missed_share"].as_f64().unwrap() > 0.05, "{silent}");
+    assert!(ran.stderr.contains("warning: servo 1 "), "{ran:?}");
+}
+
 /// The servos of the robot's shoulder and hip.
 const ROBOT_SERVOS: &str = "1+2/11+12";
 

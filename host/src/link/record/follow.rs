@@ -1,6 +1,8 @@
 //! A motion that servos follow, and how closely they do.
 
-use super::{GoalMotion, RecordingTally, Rms, RobotRecorder, RobotSample, SampleSource};
+use super::{
+    GoalMotion, RecordingTally, Rms, RobotRecorder, RobotSample, SampleSource, ServoSilence,
+};
 use crate::error::{Error, Result};
 
 /// Speed on the way to the first pose, rad/s.
@@ -12,6 +14,8 @@ pub struct FollowedMotion {
     /// The samples of the motion itself, without the ways to its first pose and back to it after
     /// torque was off.
     pub tally: RecordingTally,
+    /// What each servo did not say in these samples, in the order of ids.
+    pub silences: Vec<ServoSilence>,
     /// Measured minus commanded angle, rad.
     pub tracking: Rms,
     /// Measured minus recorded angle, rad.
@@ -48,7 +52,10 @@ pub fn follow(
         source,
         recorder,
         goes_on,
-        followed: FollowedMotion::default(),
+        followed: FollowedMotion {
+            silences: vec![ServoSilence::default(); motion.goals_rad[0].len()],
+            ..FollowedMotion::default()
+        },
     };
     let outcome = match follower.approach(&motion.goals_rad[0]) {
         Ok(Some(begin_s)) => follower.run(motion, begin_s, progress),
@@ -116,6 +123,9 @@ impl MotionFollower<'_> {
             now_s = sample.time_s;
             let followed = &mut self.followed;
             followed.tally.count(&sample);
+            for (silence, joint) in followed.silences.iter_mut().zip(&sample.joints) {
+                silence.count(joint.position_rad.is_some());
+            }
             progress(at);
             if !on {
                 continue;

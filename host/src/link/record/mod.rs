@@ -18,6 +18,7 @@ mod report_reader;
 mod run;
 mod sample;
 mod servo_watch;
+mod silence;
 mod source;
 mod stream;
 mod tally;
@@ -34,6 +35,7 @@ pub use recorder::{FileFormat, RobotRecorder};
 pub use report_reader::ReportReader;
 pub use run::record_samples;
 pub use sample::{GyroSample, RobotSample, ServoSample};
+pub use silence::ServoSilence;
 pub use source::{EmergencyOff, SampleSource};
 pub use stream::{Stream, emergency_off};
 pub use tally::{Quantiles, RecordingTally, Rms};
@@ -41,6 +43,9 @@ pub use tally::{Quantiles, RecordingTally, Rms};
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod group_tests;
+#[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
+mod silence_tests;
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod tests;

@@ -4,7 +4,7 @@ use super::report_reader::ReportReader;
 use super::sample::RobotSample;
 use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
-use crate::link::{SerialLink, Session, account_words, condition_words, is_let_down};
+use crate::link::{SerialLink, ServoError, Session, account_words, condition_words, is_let_down};
 use handstand_shared::message::{
     ArmLimits, Command, Condition, Mode, Report, ServoList, Subject, Telemetry,
 };
@@ -22,7 +22,7 @@ const TELEMETRY: Command = Command::Ask(Subject::Telemetry);
 /// Servos behind a CM-5 that reads them itself and reports 100 times a second.
 pub struct Stream<L: SerialLink> {
     session: Session<L>,
-    count: usize,
+    ids: Vec<u8>,
     reader: ReportReader,
     /// Goals that were sent and not yet obeyed, each with the number of its frame.
     sent: VecDeque<(u8, Vec<Position>)>,
@@ -72,7 +72,7 @@ impl<L: SerialLink> Stream<L> {
         Ok(Stream {
             reader: ReportReader::new(ids.len(), begun, &telemetry),
             session,
-            count: ids.len(),
+            ids: ids.to_vec(),
             sent: VecDeque::new(),
             goals: None,
             stood: None,
@@ -136,7 +136,7 @@ impl<L: SerialLink> SampleSource for Stream<L> {
             };
             self.condition = report.condition;
             self.ask_why();
-            let stood = (0..self.count).map(|place| report.position(place).map(Position));
+            let stood = (0..self.ids.len()).map(|place| report.position(place).map(Position));
             self.stood = stood.collect::<Option<_>>().or(self.stood.take());
             self.take_obeyed(report.obeyed);
             let goals = self.goals.as_deref();
@@ -151,10 +151,19 @@ impl<L: SerialLink> SampleSource for Stream<L> {
 
     fn arm(&mut self) -> Result<()> {
         // The first round of supply readings must be over, or it refuses.
+        let mut heard = vec![false; self.ids.len()];
         for _ in 0..40 {
-            self.sample(None)?;
+            let sample = self.sample(None)?;
+            let joints = sample.iter().flat_map(|sample| &sample.joints);
+            for (heard, joint) in heard.iter_mut().zip(joints) {
+                *heard |= joint.position_rad.is_some();
+            }
         }
         self.session.greet()?;
+        // The CM-5 would move the others without it.
+        if let Some((&id, _)) = self.ids.iter().zip(heard).find(|(_, heard)| !heard) {
+            return Err(ServoError::NoResponse { id }.into());
+        }
         let token = self.session.hello.token;
         let limits = ArmLimits::FULL;
         self.session
