@@ -1,6 +1,6 @@
 //! `compare`: a model's simulation beside what was measured.
 
-use crate::logs::{given, horizon};
+use crate::logs::{check, given, horizon};
 use crate::model::Model;
 use crate::value::{framed, plain};
 use crate::work;
@@ -29,6 +29,7 @@ pub fn compare(
     let model = model.get().clone();
     let horizon = horizon(horizon_s)?;
     let motions = given(logs, &model)?.motions(&model)?;
+    check(horizon, &model, &motions)?;
     let name = model.file().name;
     let report = work::run(py, None, move |_| {
         let comparison = handstand::compare::compare(&model.inner, &name, &motions, horizon);

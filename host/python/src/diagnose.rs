@@ -83,6 +83,9 @@ fn found(
             diagnose_logs(&model.inner, file, &set, options, tell)?
         }
         Learned::Motions(training, held_out) => {
+            if let Some(horizon) = options.horizon {
+                horizon.check(&model.inner, training.iter().chain(&held_out))?;
+            }
             let split = split(training, held_out);
             let (training, held_out) = (split.training.clone(), split.held_out.clone());
             let model = &model.inner;

@@ -159,6 +159,16 @@ impl Learned {
     }
 }
 
+/// Refuses a horizon that leaves windows of these motions too few samples.
+pub fn check<'a>(
+    horizon: Option<Horizon>,
+    model: &Model,
+    motions: impl IntoIterator<Item = &'a handstand::log::Motion>,
+) -> PyResult<()> {
+    let checked = horizon.map(|horizon| horizon.check(&model.inner, motions));
+    checked.transpose().map(drop).map_err(exception)
+}
+
 /// The longest that models run without correction: seconds, or `"whole"`.
 pub fn horizon(given: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Horizon>> {
     let Some(given) = given else {

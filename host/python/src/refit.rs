@@ -1,7 +1,7 @@
 //! `add` and `fit`: a model with effects it lacked, or with values fitted to logs.
 
 use crate::errors::{HandstandError, exception};
-use crate::logs::{horizon, learned_and_held_out};
+use crate::logs::{check, horizon, learned_and_held_out};
 use crate::model::Model;
 use crate::value::plain;
 use crate::work::{self, WorkReport};
@@ -41,6 +41,11 @@ pub fn add(
     let candidates = candidates_named(&names, &model.inner).map_err(exception)?;
     let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
     let horizon = horizon(horizon_s)?;
+    check(
+        horizon,
+        &model,
+        split.training.iter().chain(&split.held_out),
+    )?;
     let (text, path) = (model.text, model.path.clone());
     let added = work::run(py, progress, move |report: &WorkReport| {
         let tell = |progress| report.tell(progress);
@@ -78,6 +83,11 @@ pub fn fit(
     let free = free_parameters(&model.inner, &named).map_err(exception)?;
     let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
     let horizon = horizon(horizon_s)?;
+    check(
+        horizon,
+        &model,
+        split.training.iter().chain(&split.held_out),
+    )?;
     let path = model.path.clone();
     let fitted = work::run(py, progress, move |report| -> PyResult<_> {
         let tell = |progress| report.tell(progress);

@@ -110,6 +110,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     model.free.retain(|path| !known.contains(path));
     let logs = input::log_set(&args.logs, &args.judging.holdout);
     let motions = read(&logs.all(), &model.log)?;
+    let horizon = args.judging.run.of(&model, &motions)?;
     let options = ProposeOptions {
         limits: args.limits(
             &model,
@@ -130,7 +131,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
         }
         named => {
             let values = free_parameters(&model, named)?;
-            let horizon = args.judging.run.horizon.unwrap_or(Horizon::Whole);
+            let horizon = horizon.unwrap_or(Horizon::Whole);
             let proposal = propose_values(&model, &values, motions, horizon, &options)?;
             (Some(proposal), None)
         }

@@ -186,8 +186,12 @@ impl Evaluator<'_> {
     fn horizons(&self) -> Vec<Horizon> {
         let longest = self.training.recut(Horizon::Whole).longest_window_s();
         let ladder = LADDER_S.into_iter().filter(|seconds| *seconds < longest);
+        let held_out = self.held_out.iter().flat_map(|data| &data.motions);
+        let motions: Vec<&Motion> = self.training.motions.iter().chain(held_out).collect();
+        // What is printed as `--horizon` must be taken as such.
+        let allowed = |horizon: &Horizon| horizon.check(&self.start, motions.clone()).is_ok();
         std::iter::once(Horizon::Whole)
-            .chain(ladder.map(Horizon::Seconds))
+            .chain(ladder.map(Horizon::Seconds).filter(allowed))
             .collect()
     }
 

@@ -96,6 +96,29 @@ fn requests_that_make_no_sense_end_in_2_and_name_a_remedy() {
     }
 }
 
+/// Whatever a model says fits windows that hold no more than their own start.
+#[test]
+fn windows_of_too_few_samples_are_refused() {
+    let bench = Bench::new();
+    for line in [
+        "compare model.toml a.csv",
+        "fit model.toml a.csv --free link1.com_m -o new.toml",
+        "add model.toml viscous --fit a.csv -o new.toml",
+        "diagnose model.toml a.csv b.csv",
+        "next model.toml a.csv --value link1.com_m",
+        "drift model.toml a.csv b.csv --free link1.com_m",
+        "view model.toml a.csv --model model.toml -o new.html",
+    ] {
+        let ran = bench.run(&format!("{line} --horizon 0.0001"));
+        assert_eq!(ran.code, Some(2), "{line}: {ran:?}");
+        for said in ["--horizon 0.0001", "a.csv", "--horizon 0.06 or more"] {
+            assert!(ran.stderr.contains(said), "{line}: {ran:?}");
+        }
+    }
+    let least = bench.run("compare model.toml a.csv --horizon 0.06");
+    assert_eq!(least.code, Some(0), "{least:?}");
+}
+
 #[test]
 fn a_bad_model_is_named_by_line_and_column() {
     let bench = Bench::new();

@@ -20,6 +20,8 @@ pub struct FitRecord {
     pub error_after: f64,
     /// Unit of both errors: `rad`.
     pub error_unit: String,
+    /// The longest windows of the fit that were asked for, s; none where whole motions were.
+    pub horizon_s: Option<f64>,
 }
 
 impl FitRecord {
@@ -50,6 +52,9 @@ impl FitRecord {
         table.insert("error_before", Item::Value(number(self.error_before)));
         table.insert("error_after", Item::Value(number(self.error_after)));
         table.insert("error_unit", toml_edit::value(self.error_unit.as_str()));
+        if let Some(horizon_s) = self.horizon_s {
+            table.insert("horizon_s", Item::Value(number(horizon_s)));
+        }
         table
     }
 }

@@ -22,6 +22,7 @@ fn fitted() -> FitRecord {
         error_before: 0.012_345_678,
         error_after: 0.0021,
         error_unit: "rad".into(),
+        horizon_s: Some(0.25),
     }
 }
 
@@ -45,6 +46,34 @@ fn an_added_effect_is_there_and_every_old_line_too() {
         text.contains("intervals = { torque_nm = [0.018, 0.022] }\n"),
         "{text}"
     );
+    assert!(
+        text.contains("error_unit = \"rad\"\nhorizon_s = 0.25\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn whole_motions_have_no_horizon_and_a_later_fit_renews_it() {
+    let added = effect("coulomb", 1, 0.02);
+    let of = |horizon_s| FitRecord {
+        horizon_s,
+        ..fitted()
+    };
+    let whole = add_effect(MODEL, path(), &added, Some(&of(None))).unwrap();
+    assert!(!whole.contains("horizon_s"), "{whole}");
+    let mut text = whole.clone();
+    for horizon_s in [0.5, 0.123_456_789] {
+        text = renew_provenance(&text, path(), &of(Some(horizon_s))).unwrap();
+        let written = format!("\nhorizon_s = {}\n", number(horizon_s).to_string().trim());
+        assert_eq!(text.matches("horizon_s").count(), 1, "{text}");
+        assert!(text.contains(&written), "{text}");
+        assert_eq!(
+            Model::parse(&text, path()).unwrap().effects,
+            Model::parse(&whole, path()).unwrap().effects
+        );
+    }
+    let back = renew_provenance(&text, path(), &of(None)).unwrap();
+    assert_eq!(back, whole);
 }
 
 #[test]
