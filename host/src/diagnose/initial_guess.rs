@@ -100,13 +100,17 @@ fn simulated(
     changes.collect()
 }
 
-/// A start of which only a twentieth departs from off: rigs far lighter than a servo arm have
-/// smaller effects.
+/// Size of a small start.
+const SMALL: f64 = 0.05;
+
+/// A start of which only a twentieth departs from off, or that is twenty times as large where off is
+/// without end: rigs far lighter than a servo arm have smaller effects.
 fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
     let parameters = candidate.parameters().iter().zip(start);
     let small = parameters.map(|(parameter, value)| match parameter.off {
-        Some(off) if off.is_finite() => off + 0.05 * (value - off),
-        _ => *value,
+        Some(off) if off.is_finite() => off + SMALL * (value - off),
+        Some(_) => (value / SMALL).min(parameter.bounds.1),
+        None => *value,
     });
     small.collect()
 }

@@ -20,7 +20,7 @@ static INFO: EffectInfo = EffectInfo {
         off: Some(f64::INFINITY),
         typical: (0.5, 2.0),
         bounds: (0.001, 100.0),
-        starts: &[0.3, 1.0, 3.0],
+        starts: &[0.3, 1.0, 3.0, 0.1, 0.03],
     }],
     looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is \
      zero below it",
@@ -46,7 +46,7 @@ static ON_SLIDE: EffectInfo = EffectInfo {
         off: Some(f64::INFINITY),
         typical: (1.0, 100.0),
         bounds: (0.001, 100000.0),
-        starts: &[3.0, 10.0, 30.0],
+        starts: &[3.0, 10.0, 30.0, 1.0, 0.3],
     }],
     ..INFO
 };
