@@ -4,6 +4,7 @@ use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
 use super::budget::{EVALUATE, FINISH};
 use crate::fitting::{
     Candidate, Fit, FitData, FitOptions, fit, fit_start_states, intervals, intervals_of, polish,
+    told_by_others,
 };
 use crate::model::{Model, ParameterPath};
 use std::cmp::Ordering;
@@ -210,7 +211,11 @@ impl Hypothesis {
     }
 
     /// Takes a fit over the evaluation horizon, and predicts the held-out motions with it.
-    pub fn judge(&mut self, fit: Fit, training: &FitData, held_out: Option<&FitData>) {
+    pub fn judge(&mut self, mut fit: Fit, training: &FitData, held_out: Option<&FitData>) {
+        let of_training = BlockErrors::of(&fit.residuals, training);
+        if let Some(others) = held_out.filter(|_| of_training.is_noise()) {
+            fit = told_by_others(fit, training, others);
+        }
         let held_out = held_out
             .map(|data| BlockErrors::of(&fit_start_states(&fit.model, data).residuals, data));
         self.evaluation = Some(Evaluation {
@@ -219,7 +224,7 @@ impl Hypothesis {
                 [alone] => determined(alone, &fit, training),
                 set => significant(set, &fit, training),
             },
-            training: BlockErrors::of(&fit.residuals, training),
+            training: of_training,
             held_out,
             fit,
         });

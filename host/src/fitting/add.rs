@@ -10,6 +10,10 @@ use crate::model::{Model, edit};
 use crate::output::number::mrad;
 use std::path::Path;
 
+/// Share of the error that effects leave at most: what lowers it by less than a thousandth, a value
+/// at which the effect vanishes for one, does not show.
+const MOST_LEFT: f64 = 0.999;
+
 /// What became of effects that were to be added.
 #[derive(Debug, Clone)]
 pub enum Addition {
@@ -20,7 +24,7 @@ pub enum Addition {
         /// The fit.
         refitted: Box<Refitted>,
     },
-    /// The error is not reduced; the fit says by how much it misses.
+    /// The error is not reduced, or by less than shows; the fit says by how much it misses.
     NotReduced(Box<Refitted>),
     /// The motions do not determine the values.
     Undetermined(Undetermined),
@@ -60,7 +64,7 @@ pub fn add_effects(
         Ok(refitted) => Box::new(refitted),
         Err(why) => return Ok(Addition::Undetermined(why)),
     };
-    if refitted.error.after_rad >= refitted.error.before_rad {
+    if refitted.error.after_rad > MOST_LEFT * refitted.error.before_rad {
         return Ok(Addition::NotReduced(refitted));
     }
     let mut text = with_values(text, path, &model, &refitted)?;

@@ -15,6 +15,7 @@ use super::progress::{Progress, RefitSteps};
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::staged::fit_staged;
+use super::stairs::told_by_others;
 use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
@@ -115,6 +116,7 @@ impl Refitted {
             error_before: self.error.before_rad,
             error_after: self.error.after_rad,
             error_unit: MeasuredSignal::pooled(&signals).unit().to_string(),
+            horizon_s: self.horizon.seconds(),
         }
     }
 }
@@ -203,17 +205,20 @@ fn finish(
     split: &Split,
     horizon: Horizon,
 ) -> Result<Refitted, Undetermined> {
-    let found = settle(found, data);
+    let judged = match split.held_out.as_slice() {
+        [] => data.clone(),
+        held_out => FitData::new(before, held_out.to_vec(), horizon).weighted_like(data),
+    };
+    let mut found = settle(found, data);
+    if !split.held_out.is_empty() {
+        found = told_by_others(found, data, &judged);
+    }
     let (values, Some(_)) = fitted_values(&found, data) else {
         let blind = blind(&found, data);
         return Err(Undetermined {
             blind,
             mixed: Vec::new(),
         });
-    };
-    let judged = match split.held_out.as_slice() {
-        [] => data.clone(),
-        held_out => FitData::new(before, held_out.to_vec(), horizon),
     };
     let mut windows = data.motion_windows(horizon);
     if !split.held_out.is_empty() {

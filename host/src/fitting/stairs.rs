@@ -11,7 +11,7 @@ use super::jacobian::difference;
 use super::node::Node;
 use super::normal::NormalEquations;
 use super::residual::residuals;
-use super::solve::fit;
+use super::solve::{fit, fit_start_states};
 use crate::effects::{SMOOTH_DIFFERENCE, named};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -26,6 +26,11 @@ const OF_ERROR: f64 = 0.5;
 const FITTED: usize = 4;
 /// Places whose squared errors are closer than this, in variances of a residual, lie on one stair.
 const ONE_STAIR: f64 = 1e-3;
+/// Times that the way to the end of a stair is doubled at most, and then halved.
+const DOUBLED: usize = 12;
+const HALVED: usize = 6;
+/// Places on one stair that other motions may tell apart.
+const ON_STAIR: i32 = 32;
 
 /// How far down the stairs a fit goes.
 #[derive(Debug, Clone, Copy)]
@@ -109,6 +114,68 @@ impl Descent {
         let is_lower = self.is_lower(cost(&lowest), found);
         is_lower.then_some((lowest.model, lowest.nodes))
     }
+}
+
+/// The fit, or one elsewhere on its stairs, where it suits other motions better: which command a
+/// law swallows is told by the motions that have one near, and these may be the ones held out.
+pub(crate) fn told_by_others(mut found: Fit, data: &FitData, others: &FitData) -> Fit {
+    let jumping: Vec<ParameterPath> = found.free.iter().filter(|p| jumps(p)).copied().collect();
+    for path in jumping {
+        let predicted = fit_start_states(&found.model, others);
+        let places = places_on_stair(&found, data, &path).into_par_iter();
+        let costs = places.map(|place| {
+            let cost = residuals(&place, others, &predicted.nodes).cost();
+            (place, cost)
+        });
+        let mut places: Vec<(Model, f64)> = costs.collect();
+        let costs = places.iter().map(|(_, cost)| *cost);
+        let least = costs.fold(predicted.residuals.cost(), f64::min);
+        if least + variance(&predicted) < predicted.residuals.cost() {
+            places.retain(|(_, cost)| cost - least < ONE_STAIR * variance(&predicted));
+            found.model = places.swap_remove(places.len() / 2).0;
+        }
+    }
+    found
+}
+
+/// The model with this value moved alone over the stair on which the fit stands, from end to end.
+fn places_on_stair(found: &Fit, data: &FitData, path: &ParameterPath) -> Vec<Model> {
+    let from = path.get(&found.model).unwrap_or(f64::NAN);
+    let (low, high) = path.bounds(&found.model);
+    let moved = |at: f64| {
+        let mut model = found.model.clone();
+        ((low..=high).contains(&at) && path.set(&mut model, at)).then_some(model)
+    };
+    let (cost, one_stair) = (found.residuals.cost(), ONE_STAIR * variance(found));
+    let is_on_stair = |at: f64| {
+        let moved = moved(at).map(|model| residuals(&model, data, &found.nodes).cost());
+        moved.is_some_and(|moved| (moved - cost).abs() < one_stair)
+    };
+    let step = OF_DIFFERENCE * difference(path, from);
+    let first = from - farthest(step, |way| is_on_stair(from - way));
+    let last = from + farthest(step, |way| is_on_stair(from + way));
+    let share = |place: i32| f64::from(place) / f64::from(ON_STAIR);
+    let places = (0..=ON_STAIR).map(|place| first + share(place) * (last - first));
+    places.filter_map(moved).collect()
+}
+
+/// How far something holds, from 0, where it does; looked for from a first `step`.
+fn farthest(step: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut within, mut beyond) = (0.0, step);
+    for _ in 0..DOUBLED {
+        if !holds(beyond) {
+            break;
+        }
+        (within, beyond) = (beyond, 2.0 * beyond);
+    }
+    for _ in 0..HALVED {
+        let middle = 0.5 * (within + beyond);
+        match holds(middle) {
+            true => within = middle,
+            false => beyond = middle,
+        }
+    }
+    within
 }
 
 /// Where a value that is moved alone, by parts of its standard error, leaves least of those places

@@ -32,6 +32,49 @@ fn an_effect_is_added_with_its_value_and_provenance() {
     );
 }
 
+/// The errors that a file tells are those of windows, which it tells too; whoever fits again tells
+/// anew.
+#[test]
+fn the_windows_of_a_fit_are_written_with_its_errors() {
+    let bench = Bench::new();
+    let freed = bench.get("model.toml") + "\n[fit]\nfree = [\"link1.com_m\"]\n";
+    bench.put("model.toml", freed);
+    let horizons = |name: &str| -> Vec<String> {
+        let text = bench.get(name);
+        let lines = text.lines().filter(|line| line.starts_with("horizon_s"));
+        lines.map(str::to_string).collect()
+    };
+    let (quarter, half) = ("horizon_s = 0.25", "horizon_s = 0.5");
+    for (line, name, written) in [
+        (
+            "fit model.toml a.csv --horizon 0.25 -o one.toml",
+            "one.toml",
+            &[quarter][..],
+        ),
+        (
+            "add one.toml viscous --fit a.csv --horizon 0.5 -o two.toml",
+            "two.toml",
+            &[half, half],
+        ),
+        (
+            "fit two.toml a.csv --free link1.com_m -o three.toml",
+            "three.toml",
+            &[half],
+        ),
+        (
+            "add one.toml viscous --fit a.csv -o four.toml",
+            "four.toml",
+            &[],
+        ),
+    ] {
+        let ran = bench.run(line);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        assert_eq!(horizons(name), written, "{}", bench.get(name));
+    }
+    let read = bench.run("compare three.toml a.csv");
+    assert_eq!(read.code, Some(0), "{read:?}");
+}
+
 #[test]
 fn values_without_effect_are_refused_and_nothing_is_written() {
     let bench = Bench::new();
@@ -44,6 +87,21 @@ fn values_without_effect_are_refused_and_nothing_is_written() {
     assert_eq!(ran.code, Some(1), "{ran:?}");
     assert!(ran.stdout.contains("refused"), "{ran:?}");
     assert!(!bench.path("new.toml").exists());
+}
+
+/// What the model does not lack is fitted to nothing: the error is that of before.
+#[test]
+fn an_effect_that_gains_nothing_is_refused_and_nothing_is_written() {
+    let bench = Bench::new();
+    let first = bench.run("add model.toml viscous --fit a.csv --holdout b.csv -o first.toml");
+    assert_eq!(first.code, Some(0), "{first:?}");
+    for effect in ["sensor_lag", "air_drag"] {
+        let line = format!("add first.toml {effect} --fit a.csv --holdout b.csv -o new.toml");
+        let ran = bench.run(&line);
+        assert_eq!(ran.code, Some(1), "{ran:?}");
+        assert!(ran.stdout.contains("nothing is written"), "{ran:?}");
+        assert!(!bench.path("new.toml").exists());
+    }
 }
 
 #[test]

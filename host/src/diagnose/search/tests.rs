@@ -2,7 +2,7 @@ use super::*;
 use crate::challenge::{Motions, bench};
 use crate::diagnose::pipeline::Searched;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use crate::fitting::{Horizon, settle};
+use crate::fitting::{Fit, Horizon, fit_start_states, settle};
 use crate::log::{LogRequest, Motion, read};
 use crate::model::Model;
 use std::path::Path;
@@ -302,7 +302,7 @@ fn a_hopeless_value_is_given_up_and_a_wrong_one_is_not() {
 #[test]
 fn a_second_search_explains_what_the_first_does_not() {
     let kinds = ["fold_back", "rate_bias", "speed_limit"];
-    let (model, training, held_out) = arm(107, &kinds);
+    let (model, training, held_out) = arm(110, &kinds);
     let options = DiagnoseOptions {
         without: all_but(&kinds),
         ..DiagnoseOptions::default()
@@ -360,4 +360,23 @@ fn a_delay_is_found_where_logs_begin_with_the_first_command() {
     let mut set = fitted(&evaluator, &["delay"], [&[0.03]]);
     evaluator.evaluate(&mut set);
     assert!(evaluator.at_noise_floor(&set));
+}
+
+/// One motion tells the level at which a servo folds back between the two commands nearest to it;
+/// others have commands in between.
+#[test]
+fn held_out_motions_tell_places_on_one_stair_apart() {
+    let (model, others, one) = arm(17, &["fold_back"]);
+    let options = DiagnoseOptions::default();
+    let evaluator = Evaluator::new(&model, one, others, &options, REACH, &|_| ());
+    let mut set = fitted(&evaluator, &["fold_back"], [&[0.4833, 0.1109, 0.303]]);
+    evaluator.evaluate(&mut set);
+    let mut fit = set.fit().clone();
+    let level = fit.free.iter().find(|path| path.key() == "level").copied();
+    assert!(level.unwrap().set(&mut fit.model, 0.1124));
+    let others = evaluator.held_out.as_ref().unwrap();
+    let left = |fit: &Fit| fit_start_states(&fit.model, others).residuals.mean_square();
+    assert!(left(&fit) > 10.0, "{}", left(&fit));
+    set.judge(fit, &evaluator.training, Some(others));
+    assert!(left(set.fit()) < 1.1, "{}", left(set.fit()));
 }
