@@ -141,6 +141,18 @@ impl BlockErrors {
         self.mean().sqrt()
     }
 
+    /// Largest mean squared weighted residual of a motion.
+    pub fn worst_motion(&self) -> f64 {
+        let mut sums = vec![(0.0, 0); self.motions.len()];
+        for block in &self.blocks {
+            let (sum, count) = &mut sums[block.motion];
+            *sum += block.sum;
+            *count += block.count;
+        }
+        let means = sums.iter().map(|(sum, count)| sum / (*count).max(1) as f64);
+        means.fold(0.0, f64::max)
+    }
+
     /// Whether nothing but noise is left of any signal: what one joint or sensor shows must not
     /// drown in the others.
     pub fn is_noise(&self) -> bool {

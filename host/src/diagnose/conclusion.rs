@@ -55,7 +55,21 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
         windows: windows(evaluator),
     };
     words::complete(&mut diagnosis);
+    // What decides is said at once.
+    let at = diagnosis.summary.len().min(1);
+    diagnosis.summary.splice(at..at, values_vary(evidence));
     diagnosis
+}
+
+/// That the motions ask for other values each, where they do.
+fn values_vary(evidence: &VerdictEvidence) -> Option<String> {
+    let share = percent(evidence.per_motion_reduction.unwrap_or(0.0));
+    evidence.values_vary().then(|| {
+        format!(
+            "Values that fit one motion do not fit another: values of its own for each would \
+             remove {share} of the squared error that is left."
+        )
+    })
 }
 
 fn error(evidence: &VerdictEvidence) -> ErrorReduction {
@@ -108,12 +122,6 @@ fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
         );
     }
     warnings.extend(stability::warning(&evidence.folds));
-    if evidence.values_vary() {
-        warnings.push(format!(
-            "values that fit one motion do not fit another: each by itself would leave {} less of the squared error",
-            percent(evidence.per_motion_reduction.unwrap_or(0.0))
-        ));
-    }
     warnings.extend(longer_runs(evidence));
     warnings.extend(evidence.evaluator.start.log.notes());
     warnings
@@ -166,14 +174,25 @@ fn ruled_out(evidence: &VerdictEvidence, rivals: &[&Hypothesis]) -> Vec<RuledOut
     let tried = evidence.tried;
     let values = tried.values.iter().chain(&tried.values_refitted);
     let rest = values.chain(&tried.hypotheses).filter(|h| !kept(h));
-    rest.map(|h| RuledOut {
+    let rows = rest.map(|h| RuledOut {
         set: h.names(),
         training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
         held_out_error_rad: held_out(h).map(BlockErrors::rms_rad),
         bic_change: evidence.evaluator.bic_change(base, h),
         why: why_not(evidence, h),
-    })
-    .collect()
+    });
+    rows.fold(Vec::new(), each_once)
+}
+
+/// Puts a row among the others. A value is tried by itself and along with the free ones: of both
+/// the one that leaves less stays.
+fn each_once(mut rows: Vec<RuledOut>, row: RuledOut) -> Vec<RuledOut> {
+    match rows.iter_mut().find(|known| known.set == row.set) {
+        Some(known) if row.training_error_rad < known.training_error_rad => *known = row,
+        Some(_) => {}
+        None => rows.push(row),
+    }
+    rows
 }
 
 fn fitted(hypothesis: &Hypothesis) -> Option<&BlockErrors> {

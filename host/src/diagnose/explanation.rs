@@ -1,5 +1,6 @@
 //! The simplest explanation that the evidence allows, and its rivals.
 
+use super::block_errors::BlockErrors;
 use super::evaluator::Evaluator;
 use super::findings::{Fold, ResidualStructure, Verdict};
 use super::hypothesis::Hypothesis;
@@ -242,6 +243,12 @@ impl<'a> VerdictEvidence<'a> {
             kind,
             before: self.reference().deciding_mean(),
             left: chosen.deciding_mean(),
+            worst_motion: chosen.evaluation.as_ref().map_or(f64::INFINITY, |e| {
+                let motions = [Some(&e.training), e.held_out.as_ref()]
+                    .into_iter()
+                    .flatten();
+                motions.map(BlockErrors::worst_motion).fold(0.0, f64::max)
+            }),
             at_noise_floor: evaluator.at_noise_floor(chosen),
             held_out: evaluator.held_out.is_some(),
             tolerated: chosen.deciding_rms_rad() <= tolerance,

@@ -21,6 +21,8 @@ pub(super) struct Signs {
     pub before: f64,
     /// Mean that it leaves.
     pub left: f64,
+    /// The largest that it leaves of one motion, fitted or held out.
+    pub worst_motion: f64,
     /// Whether that is nothing but noise, on the motions fitted and on those held out.
     pub at_noise_floor: bool,
     /// Whether motions that took no part in the fit decide.
@@ -59,8 +61,8 @@ const MOST_FLOORS_FITTED: f64 = 5.0;
 const MOST_VARYING: f64 = 0.5;
 /// What is true does not make motions that it was not fitted to so many times worse.
 pub(super) const MOST_RAISED: f64 = 1.5;
-/// A model that leaves more than so many floors is not nominal.
-const MOST_NOMINAL: f64 = 1.5;
+/// A model that leaves more than so many floors, of any motion, is not nominal.
+pub(super) const MOST_NOMINAL: f64 = 1.5;
 /// Mean squared weighted error from which the noise no longer excuses it.
 pub(super) const FAR_OFF: f64 = 2.0;
 
@@ -84,11 +86,14 @@ impl Signs {
 
     /// Whether what remains is more than may be passed over.
     fn is_incomplete(&self) -> bool {
+        if self.kind == Kind::Given && self.worst_motion.sqrt() > MOST_NOMINAL {
+            return true;
+        }
         if self.at_noise_floor {
             return false;
         }
         match (self.kind, self.held_out) {
-            (Kind::Given, _) => self.left.sqrt() > MOST_NOMINAL || self.is_structured(),
+            (Kind::Given, _) => self.is_structured(),
             (_, true) => {
                 self.is_structured()
                     || self.leaves_much()

@@ -1,6 +1,7 @@
 //! What a diagnosis warns of.
 
 use super::findings::Diagnosis;
+use super::inseparable::how_to_measure;
 use super::names::listed;
 use crate::effects::parameter;
 use crate::fitting::FittedValue;
@@ -60,8 +61,11 @@ pub(super) fn pairs(diagnosis: &Diagnosis) -> Vec<String> {
         .take(PAIRS)
         .map(|(a, b, r)| {
             let correlation = percent(r.abs());
+            let measured = how_to_measure(a).or_else(|| how_to_measure(b));
+            let remedy = measured.map_or(String::new(), |how| format!("; {how}, and fix it"));
             format!(
-                "{a} and {b} are hardly told apart by these motions (correlation {correlation})"
+                "{a} and {b} are hardly told apart by these motions (correlation \
+                 {correlation}){remedy}"
             )
         })
         .collect();

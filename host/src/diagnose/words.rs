@@ -6,6 +6,7 @@
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
 use super::inseparable::{inseparable, same_in_other_words};
 use super::names::{effect_name, joined, listed};
+use super::one_sided;
 use super::warnings::{on_bound, pairs, shorter_steps, unidentified};
 
 use crate::output::number::{measured, short};
@@ -50,7 +51,9 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
         Verdict::Ambiguous => format!("Equally good explanations: {}.", rivals(diagnosis)),
         Verdict::Unexplained if diagnosis.effects.is_empty() => {
             match diagnosis.wrong_values.as_slice() {
-                [] => "Something is missing, and no known effect explains it.".into(),
+                [] => one_sided::headline(diagnosis).unwrap_or_else(|| {
+                    "Something is missing, and no known effect explains it.".into()
+                }),
                 wrong => format!(
                     "{} That is not all{}.",
                     wrong_values(wrong),
@@ -193,14 +196,18 @@ fn next(diagnosis: &Diagnosis) -> Vec<String> {
             next
         }
         Verdict::Ambiguous => experiments(diagnosis),
-        Verdict::Unexplained => vec![
-            format!("See where it fails: handstand compare {MODEL} {LOGS}"),
-            "Record a motion that isolates those conditions, or write the missing effect as a file of its own."
-                .to_string(),
-        ],
+        Verdict::Unexplained => {
+            let isolate = "Record a motion that isolates those conditions, or write the missing \
+                           effect as a file of its own.";
+            vec![
+                format!("See where it fails: handstand compare {MODEL} {LOGS}"),
+                one_sided::next(diagnosis).unwrap_or_else(|| isolate.to_string()),
+            ]
+        }
         Verdict::WrongValue => refit(diagnosis),
         Verdict::Nominal | Verdict::Adequate => vec![
-            "To look closer, record with finer resolution or with motions that reach further.".to_string(),
+            "To look closer, record with finer resolution or with motions that reach further."
+                .to_string(),
         ],
         Verdict::Unfit => vec!["Mend the logs as said, and try again.".to_string()],
     }
@@ -284,4 +291,4 @@ fn experiments(diagnosis: &Diagnosis) -> Vec<String> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

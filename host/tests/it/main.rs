@@ -40,5 +40,6 @@ mod servos;
 mod study;
 mod sysid;
 mod twins;
+mod unlike_motions;
 mod verification;
 mod wrong_values;

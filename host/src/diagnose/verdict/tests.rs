@@ -5,6 +5,7 @@ const FOUND: Signs = Signs {
     kind: Kind::Effects,
     before: 400.0,
     left: 1.3,
+    worst_motion: 1.3,
     at_noise_floor: true,
     held_out: true,
     tolerated: false,
@@ -25,6 +26,7 @@ const GIVEN: Signs = Signs {
     kind: Kind::Given,
     before: 1.1,
     left: 1.1,
+    worst_motion: 1.1,
     ..FOUND
 };
 
@@ -79,6 +81,7 @@ fn what_a_placebo_gains_too_proves_nothing() {
 fn a_model_as_given_is_nominal_only_near_the_floor() {
     let left = |left: f64| Signs {
         left,
+        worst_motion: left,
         at_noise_floor: false,
         ..GIVEN
     };
@@ -89,6 +92,17 @@ fn a_model_as_given_is_nominal_only_near_the_floor() {
         ..left(4.0)
     };
     assert_eq!(fitted.verdict(), Verdict::Unexplained);
+}
+
+/// What the motions held out do not show, one that was fitted does.
+#[test]
+fn a_model_is_not_nominal_where_any_motion_shows_more() {
+    let worst = |rms: f64| Signs {
+        worst_motion: rms * rms,
+        ..GIVEN
+    };
+    assert_eq!(worst(1.49).verdict(), Verdict::Nominal);
+    assert_eq!(worst(1.51).verdict(), Verdict::Unexplained);
 }
 
 #[test]

@@ -24,7 +24,11 @@ fn effect(kind: &str, joint: Option<usize>) -> FittedEffect {
     }
 }
 
-fn said(verdict: Verdict, effects: Vec<FittedEffect>, rivals: Vec<Vec<FittedEffect>>) -> Diagnosis {
+pub(in crate::diagnose) fn said(
+    verdict: Verdict,
+    effects: Vec<FittedEffect>,
+    rivals: Vec<Vec<FittedEffect>>,
+) -> Diagnosis {
     let alternatives = rivals.into_iter().map(|effects| Alternative {
         effects,
         wrong_values: Vec::new(),

@@ -1,0 +1,62 @@
+//! What only motions of one side show, those that were fitted or those held out: no effect can be
+//! learned from the one and proved by the other.
+
+use super::findings::{Diagnosis, MotionError};
+use super::names::listed;
+use super::verdict::MOST_NOMINAL;
+
+/// What is missing where nothing was found, if motions of one side alone show it.
+pub(super) fn headline(diagnosis: &Diagnosis) -> Option<String> {
+    let (held_out, names) = one_sided(diagnosis)?;
+    Some(match held_out {
+        true => format!(
+            "Something is missing that only motions held out show ({names}): the others do not \
+             tell what."
+        ),
+        false => format!(
+            "Something is missing that only fitted motions show ({names}): those held out prove \
+             nothing of it."
+        ),
+    })
+}
+
+/// What to do about it.
+pub(super) fn next(diagnosis: &Diagnosis) -> Option<String> {
+    let (held_out, names) = one_sided(diagnosis)?;
+    Some(match held_out {
+        true => format!(
+            "Learn from a motion like {names}: record another, or fit it and hold out a different \
+             one."
+        ),
+        false => {
+            format!("Hold out a motion like {names}: record another, or take it out of the fit.")
+        }
+    })
+}
+
+/// Whether more than noise is left of a motion.
+pub(super) fn shows(diagnosis: &Diagnosis, motion: &MotionError) -> bool {
+    motion.after_rad > MOST_NOMINAL * diagnosis.error.floor_rad
+}
+
+/// The side whose motions alone are left above what is nominal, and their names.
+fn one_sided(diagnosis: &Diagnosis) -> Option<(bool, String)> {
+    let showing = diagnosis.motions.iter().filter(|m| shows(diagnosis, m));
+    let (held_out, fitted): (Vec<_>, Vec<_>) = showing.partition(|motion| motion.held_out);
+    let names = |motions: Vec<&MotionError>| {
+        let names = motions.iter().map(|motion| motion.motion.clone());
+        listed(names.collect())
+    };
+    match (
+        diagnosis.error.held_out,
+        held_out.as_slice(),
+        fitted.as_slice(),
+    ) {
+        (true, [_, ..], []) => Some((true, names(held_out))),
+        (true, [], [_, ..]) => Some((false, names(fitted))),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests;

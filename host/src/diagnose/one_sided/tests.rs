@@ -1,0 +1,52 @@
+use super::*;
+use crate::diagnose::findings::Verdict;
+use crate::diagnose::words::tests::said;
+
+fn with_motions(motions: &[(&str, bool, f64)]) -> Diagnosis {
+    let mut diagnosis = said(Verdict::Unexplained, Vec::new(), Vec::new());
+    diagnosis.error.floor_rad = 1e-3;
+    let motion = |(name, held_out, after_rad): &(&str, bool, f64)| MotionError {
+        motion: name.to_string(),
+        held_out: *held_out,
+        before_rad: *after_rad,
+        after_rad: *after_rad,
+    };
+    diagnosis.motions = motions.iter().map(motion).collect();
+    diagnosis
+}
+
+#[test]
+fn a_motion_that_alone_shows_what_is_missing_is_named() {
+    let fitted = with_motions(&[("a", false, 1e-3), ("b", false, 9e-3), ("c", true, 1.4e-3)]);
+    let said = headline(&fitted).unwrap();
+    assert!(said.contains("only fitted motions show (b)"), "{said}");
+    assert!(
+        next(&fitted)
+            .unwrap()
+            .starts_with("Hold out a motion like b")
+    );
+    let held_out = with_motions(&[("a", false, 1e-3), ("c", true, 1.6e-3), ("d", true, 2e-3)]);
+    let said = headline(&held_out).unwrap();
+    assert!(
+        said.contains("only motions held out show (c and d)"),
+        "{said}"
+    );
+    assert!(
+        next(&held_out)
+            .unwrap()
+            .starts_with("Learn from a motion like c and d")
+    );
+}
+
+#[test]
+fn nothing_is_said_where_both_sides_show_it_or_none() {
+    for motions in [
+        [("a", false, 9e-3), ("c", true, 9e-3)],
+        [("a", false, 1e-3), ("c", true, 1e-3)],
+    ] {
+        assert_eq!(headline(&with_motions(&motions)), None);
+    }
+    let mut nothing_held_out = with_motions(&[("a", false, 1e-3), ("b", false, 9e-3)]);
+    nothing_held_out.error.held_out = false;
+    assert_eq!(headline(&nothing_held_out), None);
+}
