@@ -261,3 +261,6 @@ impl<'a> VerdictEvidence<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -280,4 +280,4 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -11,7 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const REACH: Reach = Reach::Promising;
 
 /// The model of a virtual arm that hides effects, and its motions to fit and held out.
-fn arm(seed: u64, kinds: &[&'static str]) -> (Model, Vec<Motion>, Vec<Motion>) {
+pub(in crate::diagnose) fn arm(
+    seed: u64,
+    kinds: &[&'static str],
+) -> (Model, Vec<Motion>, Vec<Motion>) {
     let bench = bench(Motions::Arm, seed, kinds).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let model = Model::parse(&bench.model_toml, Path::new("nominal.toml")).unwrap();
@@ -44,13 +47,13 @@ fn a_plainer_effect_takes_the_place_of_one_on_its_bound() {
     assert_eq!(named, ["coulomb", "viscous"]);
 }
 
-fn candidate(evaluator: &Evaluator, id: &str) -> Candidate {
+pub(in crate::diagnose) fn candidate(evaluator: &Evaluator, id: &str) -> Candidate {
     let mut known = evaluator.candidates.iter();
     *known.find(|c| c.effect.info().id == id).unwrap()
 }
 
 /// These effects on top of the model, from these values, fitted on the windows of the search.
-fn fitted<const N: usize>(
+pub(in crate::diagnose) fn fitted<const N: usize>(
     evaluator: &Evaluator,
     kinds: &[&str; N],
     values: [&[f64]; N],

@@ -1,0 +1,83 @@
+use super::*;
+use crate::diagnose::DiagnoseOptions;
+use crate::diagnose::evaluator::Reach;
+use crate::diagnose::search::tests::{arm, candidate, fitted};
+
+/// What was found beside the effect that is missing.
+#[derive(Default)]
+struct Beside {
+    hypotheses: Vec<Hypothesis>,
+    equivalents: Vec<Hypothesis>,
+    placebos: Vec<Hypothesis>,
+}
+
+/// The verdict on an arm that lacks viscous friction, with what is found beside it: told the friction
+/// in the place of another effect, and that effect gaining nothing.
+fn verdict(found: impl FnOnce(Hypothesis, Hypothesis) -> Beside) -> Verdict {
+    let (model, training, held_out) = arm(1, &["viscous"]);
+    let options = DiagnoseOptions::default();
+    let reach = Reach::Promising;
+    let evaluator = Evaluator::new(&model, training, held_out, &options, reach, &|_| ());
+    let mut friction = fitted(&evaluator, &["viscous"], [&[0.02]]);
+    evaluator.evaluate(&mut friction);
+    let other = vec![candidate(&evaluator, "air_drag")];
+    let twin = Hypothesis {
+        set: other.clone(),
+        ..friction.clone()
+    };
+    let idle = Hypothesis {
+        set: other,
+        ..evaluator.base.clone()
+    };
+    let beside = found(twin, idle);
+    let mut hypotheses = beside.hypotheses;
+    hypotheses.push(friction.clone());
+    let tried = Tried {
+        hypotheses,
+        values: Vec::new(),
+        values_refitted: Vec::new(),
+        best: Some(friction),
+    };
+    let evidence = VerdictEvidence {
+        evaluator: &evaluator,
+        tried: &tried,
+        explanation: tried.explanation(&evaluator),
+        equivalents: &beside.equivalents,
+        placebos: beside.placebos,
+        residual_structure: None,
+        per_motion_reduction: None,
+        folds: Vec::new(),
+        seed: 0,
+    };
+    evidence.verdict(&evidence.rivals())
+}
+
+#[test]
+fn an_effect_that_does_as_well_leaves_the_verdict_open() {
+    let beside = |hypotheses| Beside {
+        hypotheses,
+        ..Beside::default()
+    };
+    assert_eq!(verdict(|twin, _| beside(vec![twin])), Verdict::Ambiguous);
+    assert_eq!(verdict(|_, idle| beside(vec![idle])), Verdict::Named);
+}
+
+#[test]
+fn an_effect_of_the_same_predictions_leaves_the_verdict_open() {
+    let beside = |equivalents| Beside {
+        equivalents,
+        ..Beside::default()
+    };
+    assert_eq!(verdict(|twin, _| beside(vec![twin])), Verdict::Ambiguous);
+    assert_eq!(verdict(|_, _| beside(Vec::new())), Verdict::Named);
+}
+
+#[test]
+fn nothing_is_named_where_a_placebo_gains_as_much() {
+    let beside = |placebos| Beside {
+        placebos,
+        ..Beside::default()
+    };
+    assert_eq!(verdict(|twin, _| beside(vec![twin])), Verdict::Unexplained);
+    assert_eq!(verdict(|_, idle| beside(vec![idle])), Verdict::Named);
+}
