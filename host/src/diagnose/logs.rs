@@ -1,8 +1,7 @@
 //! A diagnosis from logs as they are named: judged, read, split, diagnosed.
 
-use super::findings::{Diagnosis, Verdict};
+use super::findings::Diagnosis;
 use super::options::DiagnoseOptions;
-use super::other_split::one_more_held_out;
 use super::pipeline::diagnose;
 use super::words::{HELD_OUT, LOGS, MODEL};
 use crate::diagnose::conventions::{self, ModelFile};
@@ -48,34 +47,6 @@ pub fn diagnose_logs(
             split: Split::default(),
         });
     }
-    let mut found = of_split(model, file, logs, options, progress)?;
-    if let Some((other, log)) = one_more_held_out(&found.diagnosis, logs, &found.split) {
-        let again = of_split(model, file, &other, options, progress)?;
-        if again.diagnosis.verdict != Verdict::Unexplained {
-            found = again;
-            found.diagnosis.warnings.insert(
-                0,
-                format!(
-                    "{} was held out too: what is missing does not show in the motions that were",
-                    log.name()
-                ),
-            );
-        }
-    }
-    let warned = findings.iter().filter(|f| f.severity == Severity::Warn);
-    let warned = warned.map(LogFinding::statement);
-    found.diagnosis.warnings.extend(warned);
-    Ok(found)
-}
-
-/// Diagnoses from logs that are fit for it.
-fn of_split(
-    model: &Model,
-    file: ModelFile,
-    logs: &LogSet,
-    options: &DiagnoseOptions,
-    progress: &(dyn Fn(Progress) + Sync),
-) -> Result<LogDiagnosis> {
     let named = logs.read(&model.log)?;
     if let Some(horizon) = options.horizon {
         horizon.check(model, named.training.iter().chain(&named.held_out))?;
@@ -83,6 +54,8 @@ fn of_split(
     let split = split(named.training, named.held_out);
     let (training, held_out) = (split.training.clone(), split.held_out.clone());
     let mut diagnosis = diagnose(model, training, held_out, options, progress);
+    let warned = findings.iter().filter(|f| f.severity == Severity::Warn);
+    diagnosis.warnings.extend(warned.map(LogFinding::statement));
     for line in &mut diagnosis.next {
         *line = with_names(line, file.path, logs);
     }

@@ -25,7 +25,6 @@ mod multistart;
 pub(crate) mod names;
 mod one_sided;
 mod options;
-mod other_split;
 mod pipeline;
 mod progress;
 mod replacement;

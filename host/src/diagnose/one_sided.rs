@@ -5,6 +5,9 @@ use super::findings::{Diagnosis, MotionError};
 use super::names::listed;
 use super::verdict::MOST_NOMINAL;
 
+/// What leaves more than this share of the held-out error does not show in it.
+const LEAST_GAIN: f64 = 0.97;
+
 /// What is missing where nothing was found, if motions of one side alone show it.
 pub(super) fn headline(diagnosis: &Diagnosis) -> Option<String> {
     let (held_out, names) = one_sided(diagnosis)?;
@@ -37,6 +40,26 @@ pub(super) fn next(diagnosis: &Diagnosis) -> Option<String> {
 /// Whether more than noise is left of a motion.
 pub(super) fn shows(diagnosis: &Diagnosis, motion: &MotionError) -> bool {
     motion.after_rad > MOST_NOMINAL * diagnosis.error.floor_rad
+}
+
+/// That what was found is not proved: the motions held out were predicted as well without it.
+pub(super) fn unproved(diagnosis: &Diagnosis) -> Option<String> {
+    let error = &diagnosis.error;
+    let found = !diagnosis.effects.is_empty() || !diagnosis.wrong_values.is_empty();
+    let gains = error.after_rad < LEAST_GAIN * error.before_rad;
+    let shown = |m: &&MotionError| !m.held_out && m.before_rad > MOST_NOMINAL * error.floor_rad;
+    let fitted: Vec<String> = diagnosis
+        .motions
+        .iter()
+        .filter(shown)
+        .map(|m| m.motion.clone())
+        .collect();
+    (found && error.held_out && !gains && !fitted.is_empty()).then(|| {
+        format!(
+            "only fitted motions show this ({}): those held out prove nothing of it",
+            listed(fitted)
+        )
+    })
 }
 
 /// The side whose motions alone are left above what is nominal, and their names.

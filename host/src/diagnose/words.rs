@@ -35,6 +35,9 @@ pub(super) fn complete(diagnosis: &mut Diagnosis) {
             "no motion was held out: the figures are of the motions that were fitted".to_string(),
         );
     }
+    diagnosis
+        .warnings
+        .splice(0..0, one_sided::unproved(diagnosis));
     diagnosis.warnings.extend(warnings);
 }
 
@@ -181,8 +184,12 @@ fn error_line(diagnosis: &Diagnosis) -> String {
         Verdict::Ambiguous => "With the first of them the",
         _ => "The",
     };
+    let changes = match error.after_rad < error.before_rad {
+        true => "falls",
+        false => "goes",
+    };
     format!(
-        "{with} error on {motions} motions falls from {before} to {after} {unit}; the floor is \
+        "{with} error on {motions} motions {changes} from {before} to {after} {unit}; the floor is \
          {floor} {unit}."
     )
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::diagnose::findings::Verdict;
-use crate::diagnose::words::tests::said;
+use crate::diagnose::words::tests::{effect, said};
 
 fn with_motions(motions: &[(&str, bool, f64)]) -> Diagnosis {
     let mut diagnosis = said(Verdict::Unexplained, Vec::new(), Vec::new());
@@ -49,4 +49,21 @@ fn nothing_is_said_where_both_sides_show_it_or_none() {
     let mut nothing_held_out = with_motions(&[("a", false, 1e-3), ("b", false, 9e-3)]);
     nothing_held_out.error.held_out = false;
     assert_eq!(headline(&nothing_held_out), None);
+}
+
+#[test]
+fn what_the_motions_held_out_do_not_show_is_not_proved() {
+    let found = |before_rad: f64, after_rad: f64| {
+        let effects = vec![effect("coulomb", Some(1))];
+        let mut diagnosis = said(Verdict::Named, effects, Vec::new());
+        diagnosis.motions = with_motions(&[("a", false, 9e-3), ("c", true, 1e-3)]).motions;
+        (diagnosis.error.before_rad, diagnosis.error.after_rad) = (before_rad, after_rad);
+        diagnosis
+    };
+    let warned = unproved(&found(1.5e-3, 1.49e-3)).unwrap();
+    assert!(
+        warned.contains("only fitted motions show this (a)"),
+        "{warned}"
+    );
+    assert_eq!(unproved(&found(1.7e-3, 1.5e-3)), None);
 }

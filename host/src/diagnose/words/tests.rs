@@ -15,7 +15,7 @@ fn value(path: &str, value: f64, on_bound: bool) -> FittedValue {
     }
 }
 
-fn effect(kind: &str, joint: Option<usize>) -> FittedEffect {
+pub(in crate::diagnose) fn effect(kind: &str, joint: Option<usize>) -> FittedEffect {
     FittedEffect {
         kind: kind.to_owned(),
         title: crate::effects::named(kind).unwrap().info().title.to_owned(),
