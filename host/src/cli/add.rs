@@ -12,8 +12,8 @@
 //! ```
 //!
 //! Exit code 1, and no file, when the logs do not determine the values, or when the error on the
-//! motions held out is not reduced by a thousandth at least. `--json` prints what `handstand fit` prints, and `effects`, as
-//! `["delay@1"]`.
+//! motions held out is not reduced by a thousandth at least. `--json` prints what `handstand fit`
+//! prints, and `effects`, as `["delay@1"]`.
 
 use super::{ExitStatus, Talk, fit, input};
 use handstand::fitting::{Addition, Refitted, add_effects, candidates_named, not_reduced};

@@ -108,7 +108,7 @@ pub struct Trace {
     pub quantity: MeasuredSignal,
     /// Root-mean-square error of this motion.
     pub rms: f64,
-    /// Where the model starts anew from a fitted state: the windows but the first, s.
+    /// Where the model restarts from a fitted state: the windows but the first, s.
     pub restarts_s: Vec<f64>,
     /// Sample times, s.
     pub time_s: Vec<f64>,

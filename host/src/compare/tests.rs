@@ -197,7 +197,7 @@ fn missing_friction_shows_and_grows_with_the_run() {
 }
 
 #[test]
-fn a_trace_tells_where_the_model_starts_anew() {
+fn a_trace_tells_where_the_model_restarts() {
     let motions = [swing(0.8, 0.02, 500), swing(-0.5, 0.02, 300)];
     let horizon = Horizon::Seconds(1.0);
     let data = FitData::new(&pendulum(), motions.to_vec(), horizon);

@@ -103,8 +103,8 @@ fn simulated(
 /// Size of a small start.
 const SMALL: f64 = 0.05;
 
-/// A start of which only a twentieth departs from off, or that is twenty times as large where off is
-/// without end: rigs far lighter than a servo arm have smaller effects.
+/// A start of which only a twentieth departs from off, or one twenty times as large where off is
+/// infinite: rigs far lighter than a servo arm have smaller effects.
 fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
     let parameters = candidate.parameters().iter().zip(start);
     let small = parameters.map(|(parameter, value)| match parameter.off {

@@ -51,7 +51,7 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 /// What the dotted lines are.
-const RESTARTS: &str = "At each dotted line the model starts anew from a state that is fitted to \
+const RESTARTS: &str = "At each dotted line the model restarts from a state that is fitted to \
                         the measurement. Its line breaks there: a step shows how far the run \
                         before had gone astray, the model does not jump.";
 
@@ -82,12 +82,12 @@ impl<'a> Pair<'a> {
         std::iter::once(self.before).chain(self.after)
     }
 
-    /// Whether a model starts anew anywhere.
+    /// Whether a model restarts anywhere.
     fn restarts(&self) -> bool {
         self.both().any(|trace| !trace.restarts_s.is_empty())
     }
 
-    /// Where a model starts anew, each place once, s.
+    /// Where a model restarts, each place once, s.
     fn restarts_s(&self) -> Vec<f64> {
         let mut all: Vec<f64> = self.both().flat_map(|t| t.restarts_s.clone()).collect();
         all.sort_by(f64::total_cmp);
@@ -139,7 +139,7 @@ fn residual(trace: &Trace) -> impl Iterator<Item = (f64, f64)> + '_ {
     trace.time_s.iter().copied().zip(left)
 }
 
-/// A course with a gap wherever the model starts anew: what lies between two windows was run by
+/// A course with a gap wherever the model restarts: what lies between two windows was run by
 /// neither.
 fn broken(trace: &Trace, course: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     let mut starts = trace.restarts_s.iter().peekable();
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_that_starts_anew_has_a_broken_line() {
+    fn a_model_that_restarts_has_a_broken_line() {
         let strokes = |course: &str| course.matches('M').count();
         let drawn = lines(&with_restarts(&[2.9985, 2.9995, 6.5]));
         let counted: Vec<(&str, usize)> = drawn.iter().map(|l| (&*l.0, strokes(&l.1))).collect();
@@ -287,8 +287,8 @@ mod tests {
         let above = [marks, before, after, ("line tone-ink", 1)];
         assert_eq!(counted, [&above[..], &[marks, before, after]].concat());
 
-        assert!(body(&with_restarts(&[3.0])).contains("the model starts anew"));
-        assert!(!body(&with_restarts(&[])).contains("starts anew"));
+        assert!(body(&with_restarts(&[3.0])).contains("the model restarts"));
+        assert!(!body(&with_restarts(&[])).contains("restarts"));
     }
 
     #[test]

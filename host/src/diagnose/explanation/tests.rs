@@ -11,8 +11,8 @@ struct Beside {
     placebos: Vec<Hypothesis>,
 }
 
-/// The verdict on an arm that lacks viscous friction, with what is found beside it: told the friction
-/// in the place of another effect, and that effect gaining nothing.
+/// The verdict on an arm that lacks viscous friction, with what is `found` beside it: it hears of an
+/// effect that does as well as the friction, and of one that gains nothing.
 fn verdict(found: impl FnOnce(Hypothesis, Hypothesis) -> Beside) -> Verdict {
     let (model, training, held_out) = arm(1, &["viscous"]);
     let options = DiagnoseOptions::default();
