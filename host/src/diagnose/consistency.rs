@@ -71,3 +71,68 @@ impl OwnFits {
         Some((together - alone) / (together - residuals.count() as f64))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::challenge::weakened_arm;
+    use crate::diagnose::search::tests::{arm, evaluator, fitted, recorded};
+    use crate::fitting::Horizon;
+
+    const HIDDEN: [&str; 1] = ["viscous"];
+
+    /// The arm's viscous friction, fitted with so many iterations from this value to its two
+    /// motions, of which the first may be recorded with a share of that friction only.
+    fn friction(share: f64, from: f64, iterations: usize) -> (Hypothesis, FitData) {
+        let (model, mut training, _) = arm(1, &HIDDEN);
+        training[0] = recorded(&weakened_arm(1, &HIDDEN, share)).1.swap_remove(0);
+        let training = FitData::new(&model, training, Horizon::Whole);
+        let search = fitted(&evaluator(1, &HIDDEN), &HIDDEN, [&[0.02]]).search;
+        let mut start = search.model.clone();
+        assert!(search.free.last().unwrap().set(&mut start, from));
+        let options = FitOptions::iterations(iterations);
+        let fitted = fit(&start, &search.free, &training, None, options);
+        let mut friction = Hypothesis::new(Vec::new(), search);
+        friction.judge(fitted, &training, None);
+        (friction, training)
+    }
+
+    #[test]
+    fn motions_are_told_apart_only_where_they_leave_more_than_noise() {
+        let (friction, training) = friction(1.0, 0.02, 12);
+        assert!(OwnFits::of(&friction, &training).is_none());
+    }
+
+    #[test]
+    fn values_of_their_own_take_away_what_one_value_leaves() {
+        let (friction, training) = friction(0.5, 0.02, 12);
+        let own = OwnFits::of(&friction, &training).unwrap();
+        let reduction = own.reduction(&friction).unwrap();
+        assert!(reduction > 0.9, "{reduction}");
+        // One motion by itself asks for no other value than itself.
+        assert!(OwnFits::of(&friction, &training.only(0)).is_none());
+    }
+
+    /// A fit that stopped short: every motion finds the value by itself, and it suits all.
+    #[test]
+    fn a_value_that_one_motion_finds_is_tried_on_all() {
+        let (stuck, training) = friction(1.0, 0.05, 0);
+        let left = |hypothesis: &Hypothesis| hypothesis.fit().residuals.mean_square();
+        assert!(left(&stuck) > FAR_OFF, "{}", left(&stuck));
+        let own = OwnFits::of(&stuck, &training).unwrap();
+        let moved = own.fit_to_all(&stuck, &training).unwrap();
+        let mut found = stuck.clone();
+        found.judge(moved, &training, None);
+        assert!(found.evaluation.as_ref().unwrap().is_noise());
+        // Noise that is left asks for no values.
+        assert_eq!(own.reduction(&found), None);
+    }
+
+    /// Where every motion asks for another value, that of none suits all.
+    #[test]
+    fn a_value_that_suits_one_motion_alone_is_not_taken() {
+        let (friction, training) = friction(0.5, 0.02, 12);
+        let own = OwnFits::of(&friction, &training).unwrap();
+        assert!(own.fit_to_all(&friction, &training).is_none());
+    }
+}

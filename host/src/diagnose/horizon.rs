@@ -239,3 +239,47 @@ impl Evaluator<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::challenge::{Motions, bench};
+    use crate::diagnose::search::tests::recorded;
+
+    /// The motions of an arm, of whose samples one of so many is left.
+    fn thinned(one_of: usize) -> FitData {
+        let mut bench = bench(Motions::Arm, 1, &["viscous"]).unwrap();
+        for log in &mut bench.logs {
+            let is_row = |line: &str| line.starts_with(|first: char| first.is_ascii_digit());
+            let mut row = 0;
+            let kept = log.csv.lines().filter(|line| {
+                row += usize::from(is_row(line));
+                !is_row(line) || row % one_of == 1 % one_of
+            });
+            log.csv = kept.map(|line| format!("{line}\n")).collect();
+        }
+        let (model, training, _) = recorded(&bench);
+        FitData::new(&model, training, Horizon::Whole)
+    }
+
+    #[test]
+    fn windows_of_the_search_hold_forty_samples_and_are_no_longer_than_wanted() {
+        let seconds = |horizons: Vec<Horizon>| -> Vec<Option<f64>> {
+            let rounded = |seconds: f64| (100.0 * seconds).round() / 100.0;
+            horizons
+                .iter()
+                .map(|horizon| horizon.seconds().map(rounded))
+                .collect()
+        };
+        let dense = thinned(1);
+        let all = search_horizons(&dense, Horizon::Whole, false);
+        assert_eq!(seconds(all), [Some(1.0), Some(0.5), Some(0.4)]);
+        let shorter = search_horizons(&dense, Horizon::Seconds(0.7), false);
+        assert_eq!(seconds(shorter), [Some(0.7), Some(0.5), Some(0.4)]);
+        let sparse = seconds(search_horizons(&thinned(10), Horizon::Whole, false));
+        assert_eq!(sparse.len(), 1);
+        assert!((3.9..4.1).contains(&sparse[0].unwrap()), "{sparse:?}");
+        let few = search_horizons(&dense, Horizon::Whole, true);
+        assert_eq!(few, [Horizon::Whole]);
+    }
+}

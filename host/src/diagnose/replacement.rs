@@ -221,3 +221,54 @@ struct Little {
     /// What the share changes in the prediction.
     made: Vec<Vec<f64>>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::search::tests::{evaluator, fitted};
+    use crate::fitting::FitData;
+
+    /// What may stand in for the effect that this arm lacks.
+    fn stand_ins(kind: &'static str, values: &[f64]) -> Vec<String> {
+        let evaluator = evaluator(1, &[kind]);
+        let chosen = fitted(&evaluator, &[kind], [values]);
+        let part = ReplaceablePart::Effect(chosen.set[0]);
+        let rest = rest(&chosen, &evaluator.search);
+        let others = evaluator.others(&chosen, &part, &rest);
+        assert!(others.iter().all(|other| other.share >= LEAST_SHARE));
+        let named = |other: &Other| match other.values.as_slice() {
+            [] => other.set[0].to_string(),
+            values => values[0].to_string(),
+        };
+        others.iter().map(named).collect()
+    }
+
+    /// The model less its only effect, with the derivatives there.
+    fn rest(chosen: &Hypothesis, search: &FitData) -> Fit {
+        let effect = chosen.set[0];
+        let (mut model, mut free) = (chosen.search.model.clone(), chosen.search.free.clone());
+        model.effects.retain(|instance| !effect.is(instance));
+        free.retain(|path| effect.paths().all(|own| own != *path));
+        let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
+        fit(&model, &free, search, nodes, options)
+    }
+
+    /// The stall torque says the same; friction of another law says something else.
+    #[test]
+    fn what_makes_most_of_the_change_may_stand_in_and_nothing_else() {
+        let of_scale = stand_ins("torque_scale", &[1.1]);
+        let scaled = |name: &String| name == "joint1.stall_torque_nm";
+        assert!(of_scale.iter().any(scaled), "{of_scale:?}");
+        let friction = |name: &String| name.starts_with("viscous") || name.starts_with("coulomb");
+        assert!(!of_scale.iter().any(friction), "{of_scale:?}");
+    }
+
+    /// A set may be replaced by no more values than it has: friction of three never stands in for
+    /// viscous friction, of which it is the general form.
+    #[test]
+    fn nothing_stands_in_that_brings_more_values() {
+        let of_viscous = stand_ins("viscous", &[0.02]);
+        let richer = |name: &String| name.starts_with("position_friction");
+        assert!(!of_viscous.iter().any(richer), "{of_viscous:?}");
+    }
+}

@@ -171,3 +171,6 @@ fn split_like(values: &DVector<f64>, like: &Residuals) -> Residuals {
         gaps: like.gaps,
     }
 }
+
+#[cfg(test)]
+mod tests;

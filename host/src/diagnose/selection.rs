@@ -35,6 +35,28 @@ impl Gate {
     }
 }
 
+/// How far an explanation lies behind the best, in log-likelihood.
+#[derive(Debug, Clone, Copy)]
+struct Behind {
+    /// Whether chance does not account for it.
+    significant: bool,
+    /// Whether the best leaves nothing but noise.
+    at_noise_floor: bool,
+    /// What it leaves more.
+    lost: f64,
+    /// What the best gains over what both improve on.
+    gained: f64,
+    /// What the best leaves above the noise.
+    unexplained: f64,
+}
+
+impl Behind {
+    fn is_clear(self) -> bool {
+        let counts = self.at_noise_floor || self.lost > self.unexplained.min(0.1 * self.gained);
+        self.significant && counts
+    }
+}
+
 impl Evaluator<'_> {
     /// The best hypothesis that is significantly and usefully better than `reference` where it
     /// counts.
@@ -97,14 +119,14 @@ impl Evaluator<'_> {
         else {
             return true;
         };
-        let significant = significantly_worse(&worse, &better, self.seed);
-        if self.at_noise_floor(best) {
-            return significant;
-        }
-        let gained = gain(&paired(&start, &better));
-        let lost = gain(&paired(&worse, &better));
-        let unexplained = 0.5 * better.count() as f64 * better.mean().ln();
-        significant && lost > unexplained.min(0.1 * gained)
+        let behind = Behind {
+            significant: significantly_worse(&worse, &better, self.seed),
+            at_noise_floor: self.at_noise_floor(best),
+            lost: gain(&paired(&worse, &better)),
+            gained: gain(&paired(&start, &better)),
+            unexplained: 0.5 * better.count() as f64 * better.mean().ln(),
+        };
+        behind.is_clear()
     }
 
     /// Change of the Bayesian information criterion on the training motions; correlated residuals
@@ -157,6 +179,35 @@ fn effective_samples(errors: &BlockErrors, fit: &Fit) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_difference_counts_by_what_is_left_and_what_was_gained() {
+        let behind = Behind {
+            significant: true,
+            at_noise_floor: true,
+            lost: 1.0,
+            gained: 1000.0,
+            unexplained: 2000.0,
+        };
+        assert!(behind.is_clear());
+        let chance = Behind {
+            significant: false,
+            ..behind
+        };
+        assert!(!chance.is_clear());
+        // Something else is missing, too: a tenth of what was gained is the least that counts ...
+        let above = |lost, unexplained| Behind {
+            at_noise_floor: false,
+            lost,
+            unexplained,
+            ..behind
+        };
+        assert!(!above(99.0, 2000.0).is_clear());
+        assert!(above(101.0, 2000.0).is_clear());
+        // ... but for a difference larger than all that is left.
+        assert!(above(21.0, 20.0).is_clear());
+        assert!(!above(19.0, 20.0).is_clear());
+    }
 
     #[test]
     fn each_condition_of_the_gate_counts() {

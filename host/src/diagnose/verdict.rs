@@ -45,9 +45,9 @@ pub(super) struct Signs {
 
 /// Share of what is left that a free form must significantly gain before the explanation counts as
 /// incomplete.
-const UNEXPLAINED_LOW: f64 = 0.2;
+pub(super) const UNEXPLAINED_LOW: f64 = 0.2;
 /// The same for the estimate itself.
-const UNEXPLAINED_SHARE: f64 = 0.35;
+pub(super) const UNEXPLAINED_SHARE: f64 = 0.35;
 /// An explanation that leaves more than this share of the squared error above the noise is not the
 /// whole of it.
 const MOST_LEFT: f64 = 0.125;

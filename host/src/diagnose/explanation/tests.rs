@@ -1,7 +1,5 @@
 use super::*;
-use crate::diagnose::DiagnoseOptions;
-use crate::diagnose::evaluator::Reach;
-use crate::diagnose::search::tests::{arm, candidate, fitted};
+use crate::diagnose::search::tests::{candidate, evaluator, fitted};
 
 /// What was found beside the effect that is missing.
 #[derive(Default)]
@@ -14,10 +12,7 @@ struct Beside {
 /// The verdict on an arm that lacks viscous friction, with what is `found` beside it: it hears of an
 /// effect that does as well as the friction, and of one that gains nothing.
 fn verdict(found: impl FnOnce(Hypothesis, Hypothesis) -> Beside) -> Verdict {
-    let (model, training, held_out) = arm(1, &["viscous"]);
-    let options = DiagnoseOptions::default();
-    let reach = Reach::Promising;
-    let evaluator = Evaluator::new(&model, training, held_out, &options, reach, &|_| ());
+    let evaluator = evaluator(1, &["viscous"]);
     let mut friction = fitted(&evaluator, &["viscous"], [&[0.02]]);
     evaluator.evaluate(&mut friction);
     let other = vec![candidate(&evaluator, "air_drag")];

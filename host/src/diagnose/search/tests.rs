@@ -1,5 +1,5 @@
 use super::*;
-use crate::challenge::{Motions, bench};
+use crate::challenge::{Bench, Motions, bench};
 use crate::diagnose::pipeline::Searched;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
 use crate::fitting::{Fit, Horizon, fit_start_states, settle};
@@ -15,7 +15,11 @@ pub(in crate::diagnose) fn arm(
     seed: u64,
     kinds: &[&'static str],
 ) -> (Model, Vec<Motion>, Vec<Motion>) {
-    let bench = bench(Motions::Arm, seed, kinds).unwrap();
+    recorded(&bench(Motions::Arm, seed, kinds).unwrap())
+}
+
+/// The model of a bench, and its motions to fit and held out.
+pub(in crate::diagnose) fn recorded(bench: &Bench) -> (Model, Vec<Motion>, Vec<Motion>) {
     let folder = tempfile::tempdir().unwrap();
     let model = Model::parse(&bench.model_toml, Path::new("nominal.toml")).unwrap();
     let (mut training, mut held_out) = (Vec::new(), Vec::new());
@@ -31,6 +35,17 @@ pub(in crate::diagnose) fn arm(
         of.extend(motions);
     }
     (model, training, held_out)
+}
+
+/// The same arm ready to be searched, nothing fitted but its own model.
+pub(in crate::diagnose) fn evaluator(seed: u64, kinds: &[&'static str]) -> Evaluator<'static> {
+    evaluator_of(&bench(Motions::Arm, seed, kinds).unwrap())
+}
+
+pub(in crate::diagnose) fn evaluator_of(bench: &Bench) -> Evaluator<'static> {
+    let (model, training, held_out) = recorded(bench);
+    let options = DiagnoseOptions::default();
+    Evaluator::new(&model, training, held_out, &options, REACH, &|_| ())
 }
 
 /// Without friction this arm whirls; beside viscous friction, Stribeck's at its lowest speed, which
@@ -82,9 +97,7 @@ fn all_but(kinds: &[&str]) -> Vec<String> {
 /// an effect that it does not have.
 #[test]
 fn a_placebo_is_evaluated_beside_what_gains_as_little() {
-    let (model, training, held_out) = arm(1, &["viscous"]);
-    let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let evaluator = evaluator(1, &["viscous"]);
     let (search, finish) = (&evaluator.search, FitOptions::iterations(FINISH));
     let alone = |id, values: &[f64]| {
         let candidate = candidate(&evaluator, id);
@@ -99,9 +112,7 @@ fn a_placebo_is_evaluated_beside_what_gains_as_little() {
 /// An arm that lacks viscous friction, and a pair that was found without ever trying it alone.
 #[test]
 fn an_effect_that_is_not_needed_leaves_the_set() {
-    let (model, training, held_out) = arm(1, &["viscous"]);
-    let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let evaluator = evaluator(1, &["viscous"]);
     let (search, finish) = (&evaluator.search, FitOptions::iterations(FINISH));
     let viscous = candidate(&evaluator, "viscous");
     let needed = evaluator.base.with(viscous, &[0.02], search, finish);
@@ -121,9 +132,7 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
 /// differently that cogging changes another motion.
 #[test]
 fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
-    let (model, training, held_out) = arm(12, &["cogging", "torque_offset"]);
-    let options = DiagnoseOptions::default();
-    let mut evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let mut evaluator = evaluator(12, &["cogging", "torque_offset"]);
     let offset = candidate(&evaluator, "torque_offset");
     let finish = FitOptions::iterations(FINISH);
     let alone = (evaluator.base).with(offset, &[-0.04], &evaluator.search, finish);
@@ -149,9 +158,7 @@ fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
 /// Short windows may hide what longer ones that it was searched on show.
 #[test]
 fn a_set_that_loses_the_windows_of_the_search_is_not_the_end() {
-    let (model, training, held_out) = arm(1, &[]);
-    let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let evaluator = evaluator(1, &[]);
     let mut set = evaluator.base.clone();
     assert!(evaluator.is_explained_by(&set));
     set.search_mean = 2.0;
@@ -183,9 +190,7 @@ fn the_search_takes_windows_that_the_model_follows() {
 #[test]
 fn a_set_that_follows_longer_runs_is_judged_over_them() {
     let kinds = ["backlash", "encoder_scale", "encoder_zero"];
-    let (model, training, held_out) = arm(7, &kinds);
-    let options = DiagnoseOptions::default();
-    let mut evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let mut evaluator = evaluator(7, &kinds);
     evaluator.recut(Horizon::Seconds(0.25));
     let mut set = fitted(&evaluator, &kinds, [&[0.08], &[0.96], &[-0.03]]);
     evaluator.evaluate(&mut set);
@@ -201,6 +206,24 @@ fn a_set_that_follows_longer_runs_is_judged_over_them() {
     evaluator.evaluate(&mut sizes[0][0]);
     evaluator.settle_horizon(&mut sizes);
     assert_eq!(evaluator.horizon, Horizon::Seconds(0.25));
+}
+
+/// An arm that sticks, with one of three effects that it lacks: long runs are lost.
+#[test]
+fn single_effects_are_judged_over_the_runs_that_show_most() {
+    let mut sticking = evaluator(6, &["coulomb", "dead_zone", "stribeck"]);
+    let alone = fitted(&sticking, &["coulomb"], [&[0.05]]);
+    sticking.horizon_given = true;
+    sticking.choose_horizon(std::slice::from_ref(&alone));
+    assert_eq!(sticking.horizon, Horizon::Whole);
+    sticking.horizon_given = false;
+    sticking.choose_horizon(&[alone]);
+    let chosen = sticking.horizon.seconds();
+    assert!(chosen.is_some_and(|seconds| seconds <= 1.0), "{chosen:?}");
+    let mut swinging = evaluator(1, &["viscous"]);
+    let friction = fitted(&swinging, &["viscous"], [&[0.02]]);
+    swinging.choose_horizon(&[friction]);
+    assert_eq!(swinging.horizon, Horizon::Whole);
 }
 
 /// An arm on a soft, tilted base, its centre of mass beside the link: two of the three follow the
@@ -226,9 +249,7 @@ fn a_third_effect_is_sought_where_the_second_gains_nothing() {
 #[test]
 fn an_effect_whose_shape_nothing_tells_counts() {
     let kinds = ["torque_saturation", "position_friction", "encoder_scale"];
-    let (model, training, held_out) = arm(10, &kinds);
-    let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let evaluator = evaluator(10, &kinds);
     let mut set = fitted(&evaluator, &kinds, [&[0.36], &[0.1, 0.003, 2.0], &[1.05]]);
     evaluator.evaluate(&mut set);
     let fit = &set.evaluation.as_ref().unwrap().fit;
@@ -243,9 +264,7 @@ fn an_effect_whose_shape_nothing_tells_counts() {
 #[test]
 fn a_set_that_only_shorter_runs_follow_is_judged_over_them() {
     let kinds = ["coulomb", "dead_zone", "stribeck"];
-    let (model, training, held_out) = arm(6, &kinds);
-    let options = DiagnoseOptions::default();
-    let mut evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let mut evaluator = evaluator(6, &kinds);
     evaluator.recut(Horizon::Seconds(4.0));
     let mut set = fitted(
         &evaluator,
@@ -265,9 +284,7 @@ fn a_set_that_only_shorter_runs_follow_is_judged_over_them() {
 #[test]
 fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
     let kinds = ["coulomb", "dead_zone", "stribeck"];
-    let (model, training, held_out) = arm(6, &kinds);
-    let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let evaluator = evaluator(6, &kinds);
     let set = fitted(
         &evaluator,
         &kinds,
@@ -283,9 +300,7 @@ fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
 #[test]
 fn a_hopeless_value_is_given_up_and_a_wrong_one_is_not() {
     let tried = |kinds: &[&'static str]| {
-        let (model, training, held_out) = arm(1, kinds);
-        let options = DiagnoseOptions::default();
-        let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+        let evaluator = evaluator(1, kinds);
         let tried = |least: Option<f64>| {
             let values = evaluator.try_values_refitted(least);
             let simulations: usize = values.iter().map(|v| v.search.simulations).sum();
@@ -329,9 +344,7 @@ fn a_second_search_explains_what_the_first_does_not() {
 /// What an arm that hides one effect leaves once it is evaluated, and once its values are stated:
 /// length of the steps, s, and squared error in variances of a reading.
 fn evaluated_and_stated(seed: u64, kind: &'static str, values: &[f64]) -> [(f64, f64); 2] {
-    let (model, training, held_out) = arm(seed, &[kind]);
-    let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let evaluator = evaluator(seed, &[kind]);
     let mut set = fitted(&evaluator, &[kind], [values]);
     evaluator.evaluate(&mut set);
     let stated = settle(set.fit().clone(), &evaluator.training);
@@ -357,9 +370,7 @@ fn stated_values_are_those_of_shorter_steps() {
 /// An arm at rest whose logs begin with the first command: the late drive was told nothing before.
 #[test]
 fn a_delay_is_found_where_logs_begin_with_the_first_command() {
-    let (model, training, held_out) = arm(11, &["delay"]);
-    let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+    let evaluator = evaluator(11, &["delay"]);
     let mut set = fitted(&evaluator, &["delay"], [&[0.03]]);
     evaluator.evaluate(&mut set);
     assert!(evaluator.at_noise_floor(&set));
