@@ -81,6 +81,7 @@ fn error(evidence: &VerdictEvidence) -> ErrorReduction {
         refitted_rad: Some(evidence.evaluator.base.deciding_rms_rad()),
         after_rad: chosen.deciding_rms_rad(),
         floor_rad: evidence.evaluator.training.floor(),
+        floor_interval_rad: evidence.evaluator.training.floor_interval(),
         held_out: evidence.evaluator.held_out.is_some(),
         reduction: blocks.map(|(before, after)| reduction(before, after, evidence.seed)),
     }

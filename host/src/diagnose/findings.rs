@@ -263,6 +263,7 @@ impl Diagnosis {
                 refitted_rad: None,
                 after_rad: f64::NAN,
                 floor_rad: f64::NAN,
+                floor_interval_rad: None,
                 held_out: false,
                 reduction: None,
             },

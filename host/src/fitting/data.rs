@@ -14,6 +14,9 @@ use crate::sim::{HiddenUnknown, Plant};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
+/// Half the 95 % interval of a normal number, in standard deviations.
+const HALF_95: f64 = 1.96;
+
 /// Measured motions ready to be fitted.
 #[derive(Debug, Clone)]
 pub struct FitData {
@@ -27,6 +30,8 @@ pub struct FitData {
     /// Per signal: standard deviation of the measurement, rad, of a rate rad/s, by which residuals
     /// are divided.
     pub sigma: Vec<f64>,
+    /// Per signal: standard error of that estimate; 0 where it is a known rounding.
+    sigma_error: Vec<f64>,
     /// The joints of the signals behind those of the joints.
     rate_joints: Vec<usize>,
     /// Per motion: the longest windows in which start errors stay small.
@@ -61,7 +66,8 @@ impl FitData {
         let rate_joints = model.log.rate_joints();
         let motions = motions.into_iter();
         let motions: Vec<Motion> = motions.map(|m| m.with_rates(&rate_joints)).collect();
-        let (signals, sigma) = signals::of(model, &motions, &rate_joints);
+        let (signals, noise) = signals::of(model, &motions, &rate_joints);
+        let sigma: Vec<f64> = noise.iter().map(|noise| noise.deviation).collect();
         let prepared = motions.par_iter().enumerate().map(|(index, motion)| {
             let assumed = assumed(model, &signals, &sigma, motion);
             let stable = match stable {
@@ -76,6 +82,7 @@ impl FitData {
             motions,
             signals,
             sigma,
+            sigma_error: noise.iter().map(|noise| noise.error).collect(),
             rate_joints,
             stable,
             assumed,
@@ -87,6 +94,7 @@ impl FitData {
     pub fn weighted_like(self, other: &FitData) -> FitData {
         FitData {
             sigma: other.sigma.clone(),
+            sigma_error: other.sigma_error.clone(),
             ..self
         }
     }
@@ -141,6 +149,7 @@ impl FitData {
             motions: kept.iter().map(|&m| self.motions[m].clone()).collect(),
             signals: self.signals.clone(),
             sigma: self.sigma.clone(),
+            sigma_error: self.sigma_error.clone(),
             rate_joints: self.rate_joints.clone(),
             stable: kept.iter().map(|&m| self.stable[m]).collect(),
             assumed: kept.iter().map(|&m| self.assumed[m].clone()).collect(),
@@ -232,12 +241,21 @@ impl FitData {
     /// Root-mean-square error that a perfect model would show, rad, all joints together; rad/s
     /// where no angle is measured.
     pub fn floor(&self) -> f64 {
-        let signals = (0..self.signals.len()).filter(|&signal| self.counts(signal));
-        let (mut squares, mut count) = (0.0, 0);
-        for signal in signals {
-            squares += self.sigma[signal] * self.sigma[signal];
-            count += 1;
-        }
-        (squares / f64::from(count.max(1))).sqrt()
+        let squares = self.pooled().map(|signal| self.sigma[signal].powi(2));
+        (squares.sum::<f64>() / self.pooled().count().max(1) as f64).sqrt()
+    }
+
+    /// 95 % interval of the floor; none where it is the rounding of a known resolution.
+    pub fn floor_interval(&self) -> Option<[f64; 2]> {
+        let (floor, count) = (self.floor(), self.pooled().count() as f64);
+        let moved = |signal: usize| self.sigma[signal] * self.sigma_error[signal] / (count * floor);
+        let variance: f64 = self.pooled().map(|signal| moved(signal).powi(2)).sum();
+        let reach = HALF_95 * variance.sqrt();
+        (reach > 0.0).then(|| [(floor - reach).max(0.0), floor + reach])
+    }
+
+    /// The signals whose errors are one figure.
+    fn pooled(&self) -> impl Iterator<Item = usize> {
+        (0..self.signals.len()).filter(|&signal| self.counts(signal))
     }
 }

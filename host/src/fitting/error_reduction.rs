@@ -20,6 +20,9 @@ pub struct ErrorReduction {
     pub after_rad: f64,
     /// What noise and resolution of the measurement alone leave.
     pub floor_rad: f64,
+    /// Its 95 % interval; absent where it is the rounding of a known resolution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub floor_interval_rad: Option<[f64; 2]>,
     /// Whether the figures are of motions that took no part in the fit.
     pub held_out: bool,
     /// 95 % interval of the relative reduction, 1 - after / before, by block bootstrap; absent

@@ -2,6 +2,18 @@
 
 use crate::log::Motion;
 
+/// How exactly something was measured, rad, m or rad/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of a reading.
+    pub deviation: f64,
+    /// Standard error of that estimate; 0 where it is the rounding of a known resolution.
+    pub error: f64,
+}
+
+/// No noise is smaller.
+const LEAST: f64 = 1e-6;
+
 /// Standard deviation of what was measured, rad, m or rad/s, in these motions one by one.
 ///
 /// The larger of the resolution's rounding error (D / sqrt 12) and the noise seen in sixth
@@ -9,14 +21,24 @@ use crate::log::Motion;
 /// of noise alternate (correlation -6/7), and the resolution alone counts. Over uneven time stamps
 /// they are divided differences: stamps that are right let no motion through, and the error of
 /// stamps that are not is an error of the reading.
-pub fn noise(motions: &[Motion], series: &[&[f64]], declared_resolution: Option<f64>) -> f64 {
+pub fn noise(motions: &[Motion], series: &[&[f64]], declared_resolution: Option<f64>) -> Noise {
     let resolution = declared_resolution.or_else(|| estimated_resolution(series));
     let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
     let times: Vec<&[f64]> = motions.iter().map(|m| m.time_s.as_slice()).collect();
     let differences = differences(&times, series);
     let seen = difference_noise(&differences);
     let counts = seen.is_finite() && (rounding == 0.0 || alternation(&differences) < -0.6);
-    rounding.max(if counts { seen } else { 0.0 }).max(1e-6)
+    let known = rounding.max(LEAST);
+    match counts && seen > known {
+        true => Noise {
+            deviation: seen,
+            error: seen * relative_error(differences.iter().map(Vec::len).sum()),
+        },
+        false => Noise {
+            deviation: known,
+            error: 0.0,
+        },
+    }
 }
 
 /// Order of the differences in which noise is looked for.
@@ -113,6 +135,17 @@ fn alternation(differences: &[Vec<f64>]) -> f64 {
     product / square
 }
 
+/// Standard error of [`difference_noise`] as a share of it, of so many differences.
+///
+/// A median of magnitudes of n normal numbers has 1.17 / sqrt(n). Neighbouring differences agree:
+/// their magnitudes do about as the square of their correlation, (2k over k + i) / (2k over k) at a
+/// distance of i, so that 3.2 of them count as one.
+fn relative_error(differences: usize) -> f64 {
+    const OF_MEDIAN: f64 = 1.17;
+    const COUNT_AS_ONE: f64 = 3.2;
+    OF_MEDIAN * (COUNT_AS_ONE / differences.max(1) as f64).sqrt()
+}
+
 /// Standard deviation of the white noise whose differences have this median magnitude.
 fn difference_noise(differences: &[Vec<f64>]) -> f64 {
     let mut magnitudes: Vec<f64> = differences.iter().flatten().map(|x| x.abs()).collect();
@@ -122,4 +155,41 @@ fn difference_noise(differences: &[Vec<f64>]) -> f64 {
     let middle = magnitudes.len() / 2;
     let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
     1.4826 * *median / gain().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sysid::generate::noise as white;
+
+    fn estimated(readings: &[f64], resolution: Option<f64>) -> Noise {
+        let time_s: Vec<f64> = (0..readings.len()).map(|k| 0.01 * k as f64).collect();
+        let motion = Motion {
+            time_s,
+            position_rad: vec![readings.to_vec()],
+            ..Motion::default()
+        };
+        noise(&[motion], &[readings], resolution)
+    }
+
+    #[test]
+    fn the_interval_of_noise_holds_it_in_nineteen_of_twenty_logs() {
+        const LOGS: u64 = 300;
+        let holds = |seed: u64| {
+            let noise = estimated(&white(600, 2e-3, seed), Some(1e-3));
+            (noise.deviation - 2e-3).abs() < 1.96 * noise.error
+        };
+        let held = (0..LOGS).filter(|seed| holds(*seed)).count();
+        assert!((276..=294).contains(&held), "{held}");
+    }
+
+    #[test]
+    fn rounding_that_is_known_is_no_estimate() {
+        let slow: Vec<f64> = (0..600)
+            .map(|k| 0.05 * (0.01 * f64::from(k)).sin())
+            .collect();
+        let rounded: Vec<f64> = slow.iter().map(|x| 5e-3 * (x / 5e-3).round()).collect();
+        let noise = estimated(&rounded, Some(5e-3));
+        assert_eq!((noise.deviation, noise.error), (5e-3 / 12f64.sqrt(), 0.0));
+    }
 }

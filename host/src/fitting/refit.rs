@@ -233,6 +233,7 @@ fn finish(
             refitted_rad: None,
             after_rad: rms_rad(&found.model),
             floor_rad: judged.floor(),
+            floor_interval_rad: judged.floor_interval(),
             held_out: !split.held_out.is_empty(),
             reduction: None,
         },

@@ -1,6 +1,6 @@
 //! The verdict in words and the error in one line.
 
-use super::words::{in_milli, measured_on, reduction, sentences, verdict_word};
+use super::words::{floor_interval, in_milli, measured_on, reduction, sentences, verdict_word};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
@@ -54,7 +54,8 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
             "Typical (RMS) error in " (error.quantity.milli()) ", " (in_windows(&diagnosis.windows))
             ", on " (measured_on(error))
             @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
-            ". The floor is what sensor resolution and noise alone leave; no model can do better."
+            ". The floor" (floor_interval(error)) " is what sensor resolution and noise alone leave; "
+            "no model can do better."
         }
     }
 }

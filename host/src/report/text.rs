@@ -1,7 +1,8 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    in_columns, in_milli, measured_on, reduction, sentences, sorted, verdict_word, with_ends,
+    floor_interval, in_columns, in_milli, measured_on, reduction, sentences, sorted, verdict_word,
+    with_ends,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
 use crate::diagnose::{Alternative, BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
@@ -95,8 +96,9 @@ fn error(diagnosis: &Diagnosis) -> Option<String> {
     };
     let mut lines = vec![
         format!(
-            "Error: {before} {unit}{change} floor {} {unit}.",
-            mrad(error.floor_rad)
+            "Error: {before} {unit}{change} floor {}{} {unit}.",
+            mrad(error.floor_rad),
+            floor_interval(error)
         ),
         format!(
             "Searched {}; RMS {}, on {}.",

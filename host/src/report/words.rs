@@ -62,6 +62,15 @@ pub(super) fn measured_on(error: &ErrorReduction) -> &'static str {
     }
 }
 
+/// " (1.42 to 1.55)", where the floor is an estimate.
+pub(super) fn floor_interval(error: &ErrorReduction) -> String {
+    error
+        .floor_interval_rad
+        .map_or(String::new(), |[low, high]| {
+            format!(" ({} to {})", mrad(low), mrad(high))
+        })
+}
+
 /// "the error falls by 85 % (95 % interval 80 to 89 %)"; nothing if there is no error to reduce.
 pub(super) fn reduction(error: &ErrorReduction) -> Option<String> {
     let reduction = 1.0 - error.after_rad / error.before_rad;

@@ -45,6 +45,7 @@ pub(in crate::diagnose) fn said(
             refitted_rad: Some(35e-3),
             after_rad: 2e-3,
             floor_rad: 1.5e-3,
+            floor_interval_rad: None,
             held_out: true,
             reduction: Some([0.9, 0.96]),
         },

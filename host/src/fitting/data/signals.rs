@@ -1,21 +1,24 @@
 //! The signals that are compared: one a joint, and the rates of sensors beside those of angles.
 
 use super::super::horizon::Window;
-use super::super::noise::noise;
+use super::super::noise::{Noise, noise};
 use super::FitData;
 use crate::log::Motion;
 use crate::model::{ColumnMean, MeasuredSignal, Model};
 use std::ops::Range;
 
 /// Stands for the noise of a joint of which nothing is measured.
-const NO_NOISE: f64 = 1e-3;
+const NO_NOISE: Noise = Noise {
+    deviation: 1e-3,
+    error: 0.0,
+};
 
 /// What the signals are, and how exactly these motions hold them.
 pub(super) fn of(
     model: &Model,
     motions: &[Motion],
     rate_joints: &[usize],
-) -> (Vec<MeasuredSignal>, Vec<f64>) {
+) -> (Vec<MeasuredSignal>, Vec<Noise>) {
     let known = |series: Vec<&[f64]>, columns: Option<&ColumnMean>| {
         noise(motions, &series, columns.and_then(ColumnMean::resolution))
     };
@@ -23,11 +26,11 @@ pub(super) fn of(
     let of_joints = of_joints.map(|(joint, columns)| {
         let signal = columns.signal();
         let series = motions.iter().map(|motion| motion.measured(joint, signal));
-        let sigma = match signal {
+        let noise = match signal {
             MeasuredSignal::Nothing => NO_NOISE,
             _ => known(series.collect(), columns.measured()),
         };
-        (signal, sigma)
+        (signal, noise)
     });
     let of_rates = rate_joints.iter().map(|&joint| {
         let series = motions

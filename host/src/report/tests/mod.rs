@@ -140,7 +140,7 @@ fn text_of_a_named_effect() {
     Wrong values
       - motor.torque_nm: 1.20 -> 1.470 N m (1.440 to 1.500)
 
-    Error: 41.2 mrad as given, 30.7 mrad refitted -> 6.31 mrad; floor 5.10 mrad.
+    Error: 41.2 mrad as given, 30.7 mrad refitted -> 6.31 mrad; floor 5.10 (5.00 to 5.20) mrad.
     Searched in windows of 1 s; RMS over whole motions, on motions that took no part in the fit.
     So the error falls by 85 % (95 % interval of the reduction: 81 % to 88 %).
 

@@ -213,6 +213,7 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
             refitted_rad: Some(30.7e-3),
             after_rad: 6.31e-3,
             floor_rad: 5.1e-3,
+            floor_interval_rad: Some([5.0e-3, 5.2e-3]),
             held_out: true,
             reduction: Some([0.81, 0.88]),
         },
