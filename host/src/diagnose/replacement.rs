@@ -263,12 +263,12 @@ mod tests {
         assert!(!of_scale.iter().any(friction), "{of_scale:?}");
     }
 
-    /// A set may be replaced by no more values than it has: friction of three never stands in for
-    /// viscous friction, of which it is the general form.
+    /// A spring about some angle does what a constant torque does, with one value more.
     #[test]
     fn nothing_stands_in_that_brings_more_values() {
-        let of_viscous = stand_ins("viscous", &[0.02]);
-        let richer = |name: &String| name.starts_with("position_friction");
-        assert!(!of_viscous.iter().any(richer), "{of_viscous:?}");
+        let of_offset = stand_ins("torque_offset", &[0.05]);
+        assert!(of_offset.iter().any(|name| name.starts_with("com_angle")));
+        let richer = |name: &String| name.starts_with("cable_spring");
+        assert!(!of_offset.iter().any(richer), "{of_offset:?}");
     }
 }

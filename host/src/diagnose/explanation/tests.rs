@@ -12,10 +12,15 @@ struct Beside {
 /// The verdict on an arm that lacks viscous friction, with what is `found` beside it: it hears of an
 /// effect that does as well as the friction, and of one that gains nothing.
 fn verdict(found: impl FnOnce(Hypothesis, Hypothesis) -> Beside) -> Verdict {
+    verdict_beside("air_drag", found)
+}
+
+/// The same with another effect beside the friction.
+fn verdict_beside(kind: &str, found: impl FnOnce(Hypothesis, Hypothesis) -> Beside) -> Verdict {
     let evaluator = evaluator(1, &["viscous"]);
     let mut friction = fitted(&evaluator, &["viscous"], [&[0.02]]);
     evaluator.evaluate(&mut friction);
-    let other = vec![candidate(&evaluator, "air_drag")];
+    let other = vec![candidate(&evaluator, kind)];
     let twin = Hypothesis {
         set: other.clone(),
         ..friction.clone()
@@ -55,6 +60,16 @@ fn an_effect_that_does_as_well_leaves_the_verdict_open() {
     };
     assert_eq!(verdict(|twin, _| beside(vec![twin])), Verdict::Ambiguous);
     assert_eq!(verdict(|_, idle| beside(vec![idle])), Verdict::Named);
+}
+
+/// Simplest first: what needs another value to do as well is no rival.
+#[test]
+fn an_effect_of_more_values_that_does_as_well_leaves_it_named() {
+    let beside = |twin, _| Beside {
+        hypotheses: vec![twin],
+        ..Beside::default()
+    };
+    assert_eq!(verdict_beside("stribeck", beside), Verdict::Named);
 }
 
 #[test]

@@ -121,6 +121,7 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
     evaluator.evaluate(&mut pair);
 
     assert_eq!(pair.names(), ["viscous@1", "cogging@1"]);
+    assert!(!pair.evaluation.as_ref().unwrap().significant);
     let mut sizes = [Vec::new(), vec![pair]];
     let left = evaluator.pruned(&mut sizes, &mut Vec::new()).unwrap();
     assert_eq!(left.names(), ["viscous@1"]);
