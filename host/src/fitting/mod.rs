@@ -62,7 +62,7 @@ pub use horizon::{Horizon, Window};
 pub use information::Information;
 pub use least_horizon::HorizonTooShort;
 pub use node::Node;
-pub use noise::{estimated_resolution, noise};
+pub use noise::{Noise, estimated_resolution, noise};
 pub(crate) use polish::{polish, settle};
 pub use profile::profile_intervals;
 pub use progress::Progress;

@@ -23,13 +23,9 @@ pub fn write_new(path: &Path, text: &str, force: bool) -> Result<()> {
 /// # Errors
 /// As [`write_new`].
 pub fn write_new_bytes(path: &Path, bytes: &[u8], force: bool) -> Result<()> {
-    vacant(path, force)?;
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    not_taken(path, force)?;
     let refused = |source| Error::file(path, "write", source);
-    let mut file = temporary(folder).map_err(|error| refused(own_words(folder, &error)))?;
+    let mut file = beside(path)?;
     file.write_all(bytes).map_err(refused)?;
     file.as_file().sync_all().map_err(refused)?;
     let kept = match force {
@@ -49,11 +45,18 @@ fn own_words(folder: &Path, error: &std::io::Error) -> std::io::Error {
     missing.unwrap_or_else(|| error.kind().into())
 }
 
-/// Refuses a name that is taken before the work begins, not after it.
+/// Refuses a name that is taken, or a folder that takes no file, before the work begins, not after
+/// it.
 ///
 /// # Errors
-/// [`Error::Usage`] if the file exists and may not be replaced.
+/// [`Error::Usage`] if the file exists and may not be replaced; [`Error::File`] if nothing can be
+/// written beside it.
 pub fn vacant(path: &Path, force: bool) -> Result<()> {
+    not_taken(path, force)?;
+    beside(path).map(drop)
+}
+
+fn not_taken(path: &Path, force: bool) -> Result<()> {
     match !force && path.symlink_metadata().is_ok() {
         true => Err(exists(path)),
         false => Ok(()),
@@ -65,6 +68,15 @@ fn exists(path: &Path) -> Error {
         format!("{} exists", path.display()),
         "choose another name or pass --force",
     )
+}
+
+/// A temporary file in the folder that a file is to be in.
+fn beside(path: &Path) -> Result<tempfile::NamedTempFile> {
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    temporary(folder).map_err(|error| Error::file(path, "write", own_words(folder, &error)))
 }
 
 /// A new file with the permissions any new file gets; a temporary one would be closed to others.
@@ -104,6 +116,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("nowhere").join("model.toml");
         let error = write_new(&path, "text", false).unwrap_err();
+        // Before the work, too.
+        assert_eq!(
+            vacant(&path, false).unwrap_err().to_string(),
+            error.to_string()
+        );
         assert_eq!(error.exit_code(), 3);
         let shown = path.display();
         assert!(

@@ -99,13 +99,13 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
         study.case.control.design = design;
     }
     if let Some(folder) = &args.output {
+        super::write::folder(folder)?;
         for (quantity, _) in &chosen {
             for ending in ["csv", "svg"] {
                 let file = folder.join(format!("{}.{ending}", quantity.id));
                 output::vacant(&file, args.force)?;
             }
         }
-        super::write::folder(folder)?;
     }
     let levels = |levels: &Levels| match args.levels.is_empty() {
         true => levels.values.to_vec(),
