@@ -29,7 +29,7 @@ use handstand::experiment::{
     propose_values,
 };
 use handstand::fitting::{Horizon, effect_named, free_parameters};
-use handstand::log::{LogRequest, LogSet, read, to_csv};
+use handstand::log::{LogRequest, LogSet, to_csv};
 use handstand::model::Model;
 use handstand::report::{next_steps, proposal_text};
 use handstand::{Error, Result, output};
@@ -109,7 +109,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));
     let logs = input::log_set(&args.logs, &args.judging.holdout);
-    let motions = read(&logs.all(), &model.log)?;
+    let motions = input::motions(&logs.all(), &model.log, talk)?;
     let horizon = args.judging.run.of(&model, &motions)?;
     let options = ProposeOptions {
         limits: args.limits(

@@ -3,6 +3,8 @@
 use super::arrays::Arrays;
 use super::{act, blocking, session};
 use crate::compare::{FailingSamples, residual_variables};
+use crate::error::Error;
+use crate::fitting::Horizon;
 use crate::lab::pages::{compare as pages, frame};
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
@@ -265,15 +267,9 @@ pub(super) async fn horizon(
     Path(number): Path<u32>,
     Json(chosen): Json<HorizonChosen>,
 ) -> Answer {
-    act(lab, number, "compare", move |session, _| {
-        let wrong = match chosen.window {
-            ChosenWindow::Seconds(seconds) => !WINDOWS_S.contains(&seconds),
-            ChosenWindow::Automatic | ChosenWindow::Whole => false,
-        };
-        if wrong {
-            return Err(LabError::Conflict(
-                "windows last from 0.02 s to 10 000 s".into(),
-            ));
+    act(lab, number, "compare", move |session, saved| {
+        if let ChosenWindow::Seconds(seconds) = chosen.window {
+            allowed(session, saved, seconds)?;
         }
         session.change(|saved| {
             saved.window = chosen.window;
@@ -282,4 +278,23 @@ pub(super) async fn horizon(
         Ok(())
     })
     .await
+}
+
+/// Refuses windows that the commands, which the pages copy, would refuse.
+fn allowed(session: &LabSession, saved: &SavedSession, seconds: f64) -> Result<(), LabError> {
+    if !WINDOWS_S.contains(&seconds) {
+        return Err(LabError::Conflict(
+            "windows last from 0.02 s to 10 000 s".into(),
+        ));
+    }
+    let Some(model) = session.model(saved)? else {
+        return Ok(());
+    };
+    // Logs that cannot be read are told of where they are compared.
+    let Ok(split) = session.split(saved, &model) else {
+        return Ok(());
+    };
+    let motions = split.training.iter().chain(&split.held_out);
+    let checked = Horizon::Seconds(seconds).check(&model, motions);
+    Ok(checked.map_err(Error::from)?)
 }
