@@ -153,6 +153,15 @@ pub struct EffectRow {
     pub instead: BTreeMap<String, usize>,
 }
 
+/// How often the intervals of one value hold the truth, whatever joint it is of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ValueRow {
+    /// Kind and key: `fold_back.level`.
+    pub value: String,
+    /// Intervals of 95 % that hold the truth.
+    pub coverage: Share,
+}
+
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tally {
@@ -160,6 +169,8 @@ pub struct Tally {
     pub families: Vec<FamilyRow>,
     /// A row per family and effect, of those that hide one.
     pub effects: Vec<EffectRow>,
+    /// A row per value of which an interval missed the truth, those that miss most first.
+    pub values: Vec<ValueRow>,
 }
 
 impl Tally {
@@ -182,6 +193,7 @@ impl Tally {
                 .iter()
                 .flat_map(|&family| effect_rows(family, &of(family)))
                 .collect(),
+            values: value_rows(outcomes),
         }
     }
 
@@ -190,6 +202,26 @@ impl Tally {
         let met = |row: &FamilyRow| row.is_reached() && row.is_near() && row.is_covered();
         self.families.iter().all(met)
     }
+}
+
+fn value_rows(outcomes: &[Outcome]) -> Vec<ValueRow> {
+    let mut held: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    for value in outcomes.iter().flat_map(Outcome::fitted) {
+        let (owner, key) = value.path.split_once('.').unwrap_or((&value.path, ""));
+        let kind = owner.split('@').next().unwrap_or(owner);
+        let (met, of) = held.entry(format!("{kind}.{key}")).or_default();
+        *met += usize::from(value.covered);
+        *of += 1;
+    }
+    let missed = held.into_iter().filter(|(_, (met, of))| met < of);
+    let row = |(value, (met, of))| ValueRow {
+        value,
+        coverage: Share::of(met, of),
+    };
+    let mut rows: Vec<ValueRow> = missed.map(row).collect();
+    let share = |row: &ValueRow| row.coverage.share().unwrap_or(1.0);
+    rows.sort_by(|a, b| share(a).total_cmp(&share(b)));
+    rows
 }
 
 fn effect_rows(family: Family, outcomes: &[&Outcome]) -> Vec<EffectRow> {
@@ -259,6 +291,28 @@ mod tests {
         outcomes[1].values[0].covered = false;
         let coverage = Tally::of(&outcomes).families[0].coverage;
         assert_eq!((coverage.met, coverage.of), (1, 1));
+    }
+
+    #[test]
+    fn values_that_miss_are_counted_whatever_their_joint() {
+        let value = |path: &str, covered| {
+            let mut outcome = outcome("delay", Answer::Right, 1.0, covered);
+            outcome.values[0].path = path.to_string();
+            outcome
+        };
+        let tally = Tally::of(&[
+            value("delay@1.delay_s", true),
+            value("delay@2.delay_s", false),
+            value("mass@1.added_kg", true),
+            value("base_tilt.angle_rad", false),
+        ]);
+        let rows = tally.values.iter();
+        let rows = rows.map(|row| (row.value.as_str(), row.coverage.met, row.coverage.of));
+        let rows: Vec<_> = rows.collect();
+        assert_eq!(
+            rows,
+            [("base_tilt.angle_rad", 0, 1), ("delay.delay_s", 1, 2)]
+        );
     }
 
     #[test]

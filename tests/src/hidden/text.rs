@@ -5,7 +5,7 @@ use super::tally::{COVERAGE, EffectRow, FamilyRow, MOST_RATIO, Share, Tally};
 use crate::measured::Measured;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 
-/// Families beside their targets, then what was said of each effect.
+/// Families beside their targets, what was said of each effect, values whose intervals miss.
 pub fn tables(tally: &Tally) -> Measured {
     let mut families = table([
         "family",
@@ -38,6 +38,14 @@ pub fn tables(tally: &Tally) -> Measured {
     for row in &tally.effects {
         effects.add_row(effect_cells(row));
     }
+    let mut values = table(["value", "intervals that hold the truth (95 %)"]);
+    for row in &tally.values {
+        let Share { met, of, .. } = row.coverage;
+        values.add_row([
+            row.value.clone(),
+            format!("{met} of {of}: {}", share(&row.coverage)),
+        ]);
+    }
     let notes = [
         "Reached: named exactly, joint and all, or in a set of explanations that cannot be told \
          apart; nothing said to be missing where nothing is; unexplained where the library lacks \
@@ -49,10 +57,12 @@ pub fn tables(tally: &Tally) -> Measured {
             100.0 * COVERAGE.0,
             100.0 * COVERAGE.1
         ),
+        "Values of which every interval holds the truth are not in the list.".to_string(),
     ];
     Measured::default()
         .table(families)
         .table(effects)
+        .table(values)
         .lines(notes)
 }
 
