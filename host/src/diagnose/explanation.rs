@@ -9,6 +9,7 @@ use super::stability::most_raised;
 use super::verdict::{Kind, Signs};
 
 /// Every explanation that was tried.
+#[derive(Default)]
 pub(super) struct Tried {
     /// Sets of effects.
     pub hypotheses: Vec<Hypothesis>,

@@ -7,15 +7,13 @@ use super::cut::{cut, cut_evenly};
 use super::growth::stable_horizon;
 use super::horizon::{Horizon, Window};
 use super::node::{Node, StartGuess};
+use super::student::quantile_975;
 use super::windows::MotionWindow;
 use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model};
 use crate::sim::{HiddenUnknown, Plant};
 use rayon::prelude::*;
 use std::collections::HashMap;
-
-/// Half the 95 % interval of a normal number, in standard deviations.
-const HALF_95: f64 = 1.96;
 
 /// Measured motions ready to be fitted.
 #[derive(Debug, Clone)]
@@ -250,7 +248,7 @@ impl FitData {
         let (floor, count) = (self.floor(), self.pooled().count() as f64);
         let moved = |signal: usize| self.sigma[signal] * self.sigma_error[signal] / (count * floor);
         let variance: f64 = self.pooled().map(|signal| moved(signal).powi(2)).sum();
-        let reach = HALF_95 * variance.sqrt();
+        let reach = quantile_975(f64::INFINITY) * variance.sqrt();
         (reach > 0.0).then(|| [(floor - reach).max(0.0), floor + reach])
     }
 

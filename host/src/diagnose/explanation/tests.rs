@@ -29,21 +29,34 @@ fn verdict_beside(kind: &str, found: impl FnOnce(Hypothesis, Hypothesis) -> Besi
         set: other,
         ..evaluator.base.clone()
     };
-    let beside = found(twin, idle);
-    let mut hypotheses = beside.hypotheses;
+    let Beside {
+        mut hypotheses,
+        equivalents,
+        placebos,
+    } = found(twin, idle);
     hypotheses.push(friction.clone());
     let tried = Tried {
         hypotheses,
-        values: Vec::new(),
-        values_refitted: Vec::new(),
         best: Some(friction),
+        ..Tried::default()
     };
+    let explanation = tried.explanation(&evaluator);
+    verdict_of(&evaluator, &tried, explanation, &equivalents, placebos)
+}
+
+fn verdict_of(
+    evaluator: &Evaluator,
+    tried: &Tried,
+    explanation: Explanation,
+    equivalents: &[Hypothesis],
+    placebos: Vec<Hypothesis>,
+) -> Verdict {
     let evidence = VerdictEvidence {
-        evaluator: &evaluator,
-        tried: &tried,
-        explanation: tried.explanation(&evaluator),
-        equivalents: &beside.equivalents,
-        placebos: beside.placebos,
+        evaluator,
+        tried,
+        explanation,
+        equivalents,
+        placebos,
         residual_structure: None,
         per_motion_reduction: None,
         folds: Vec::new(),
@@ -90,4 +103,27 @@ fn nothing_is_named_where_a_placebo_gains_as_much() {
     };
     assert_eq!(verdict(|twin, _| beside(vec![twin])), Verdict::Unexplained);
     assert_eq!(verdict(|_, idle| beside(vec![idle])), Verdict::Named);
+}
+
+/// A value that the file frees is what its owner does not know: where it explains all, an effect of
+/// the same predictions is only mentioned. Beside a value that was taken for known it is a rival.
+#[test]
+fn a_value_that_the_file_frees_stays_the_answer() {
+    let mut evaluator = evaluator(1, &["viscous"]);
+    let mut found = fitted(&evaluator, &["viscous"], [&[0.02]]);
+    evaluator.evaluate(&mut found);
+    let twin = [found.clone()];
+    let value = Hypothesis {
+        set: Vec::new(),
+        values: evaluator.base.search.free.clone(),
+        ..found
+    };
+    let tried = Tried::default();
+    let verdict = |evaluator: &Evaluator| {
+        let explanation = Explanation::Value(&value);
+        verdict_of(evaluator, &tried, explanation, &twin, Vec::new())
+    };
+    assert_eq!(verdict(&evaluator), Verdict::WrongValue);
+    evaluator.base.search.free.clear();
+    assert_eq!(verdict(&evaluator), Verdict::Ambiguous);
 }
