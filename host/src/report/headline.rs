@@ -54,8 +54,8 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
             "Typical (RMS) error in " (error.quantity.milli()) ", " (in_windows(&diagnosis.windows))
             ", on " (measured_on(error))
             @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
-            ". The floor" (floor_interval(error)) " is what sensor resolution and noise alone leave; "
-            "no model can do better."
+            ". The floor" (floor_interval(error))
+            " is what sensor resolution and noise alone leave; no model can do better."
         }
     }
 }

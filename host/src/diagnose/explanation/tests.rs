@@ -9,8 +9,8 @@ struct Beside {
     placebos: Vec<Hypothesis>,
 }
 
-/// The verdict on an arm that lacks viscous friction, with what is `found` beside it: it hears of an
-/// effect that does as well as the friction, and of one that gains nothing.
+/// The verdict on an arm that lacks viscous friction, with what is `found` beside it: that is told
+/// an effect that does as well as the friction, and one that gains nothing.
 fn verdict(found: impl FnOnce(Hypothesis, Hypothesis) -> Beside) -> Verdict {
     verdict_beside("air_drag", found)
 }

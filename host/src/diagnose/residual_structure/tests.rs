@@ -4,8 +4,8 @@ use crate::diagnose::search::tests::{evaluator, evaluator_of, fitted};
 use crate::diagnose::verdict::{UNEXPLAINED_LOW, UNEXPLAINED_SHARE};
 use crate::fitting::Candidate;
 
-/// An arm that lacks little viscous friction: without it nearly all of what is left can be explained, and
-/// with it nothing is left to explain.
+/// An arm that lacks little viscous friction: nearly all of what the model leaves without it can be
+/// explained, and with it nothing is left to explain.
 #[test]
 fn a_missing_law_leaves_structure_and_the_right_one_none() {
     let evaluator = evaluator_of(&weakened_arm(1, &["viscous"], 0.1));
