@@ -109,6 +109,19 @@ impl BlockErrors {
         less
     }
 
+    /// So many times the squares.
+    #[cfg(test)]
+    pub fn times(&self, factor: f64) -> BlockErrors {
+        let mut times = self.clone();
+        times
+            .blocks
+            .iter_mut()
+            .for_each(|block| block.sum *= factor);
+        let sums = times.motions.iter_mut().chain(&mut times.signals);
+        sums.for_each(|(sum, _)| *sum *= factor);
+        times
+    }
+
     /// Sum of squared weighted residuals.
     pub fn sum(&self) -> f64 {
         self.blocks.iter().map(|block| block.sum).sum()

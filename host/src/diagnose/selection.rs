@@ -179,6 +179,41 @@ fn effective_samples(errors: &BlockErrors, fit: &Fit) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnose::search::tests::{evaluator, fitted};
+
+    /// The set evaluated, with so many times the squares that it leaves.
+    fn leaving(evaluator: &Evaluator, mut set: Hypothesis, times: f64) -> Hypothesis {
+        evaluator.evaluate(&mut set);
+        let evaluation = set.evaluation.as_mut().unwrap();
+        evaluation.significant = true;
+        evaluation.training = evaluation.training.times(times);
+        let held_out = evaluation.held_out.take().unwrap();
+        evaluation.held_out = Some(held_out.times(times));
+        set
+    }
+
+    /// Above the noise something else bends every candidate: a simpler set is taken if it leaves
+    /// hardly more, and not if it leaves a quarter more.
+    #[test]
+    fn the_simpler_of_sets_that_leave_nearly_the_same_is_taken() {
+        let evaluator = evaluator(1, &["viscous"]);
+        let viscous = fitted(&evaluator, &["viscous"], [&[0.02]]);
+        let both = fitted(
+            &evaluator,
+            &["viscous", "cogging"],
+            [&[0.02], &[0.001, 10.0, 0.0]],
+        );
+        let names = |times: f64| {
+            let sets = [
+                leaving(&evaluator, viscous.clone(), times),
+                leaving(&evaluator, both.clone(), 4.0),
+            ];
+            assert!(!evaluator.clearly_worse(&sets[0], &sets[1], &evaluator.base));
+            evaluator.accepted(&evaluator.base, &sets).unwrap().names()
+        };
+        assert_eq!(names(4.1), ["viscous@1"]);
+        assert_eq!(names(5.0), ["viscous@1", "cogging@1"]);
+    }
 
     #[test]
     fn a_difference_counts_by_what_is_left_and_what_was_gained() {

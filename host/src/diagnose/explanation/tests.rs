@@ -127,3 +127,30 @@ fn a_value_that_the_file_frees_stays_the_answer() {
     evaluator.base.search.free.clear();
     assert_eq!(verdict(&evaluator), Verdict::Ambiguous);
 }
+
+/// Some other friction helps an arm that lacks viscous friction, by far not as much as that does.
+#[test]
+fn a_value_that_is_clearly_worse_is_not_the_explanation() {
+    let evaluator = evaluator(1, &["viscous"]);
+    let mut friction = fitted(&evaluator, &["viscous"], [&[0.02]]);
+    evaluator.evaluate(&mut friction);
+    let (given, base) = (&evaluator.given, &evaluator.base);
+    let values = evaluator.try_values(None);
+    assert!(evaluator.accepted(given, &values).is_some());
+    let refitted = evaluator.try_values_refitted(None);
+    assert!(evaluator.accepted(base, &refitted).is_some());
+    let among = |values, values_refitted, best| {
+        let tried = Tried {
+            values,
+            values_refitted,
+            best,
+            ..Tried::default()
+        };
+        let explanation = tried.explanation(&evaluator);
+        explanation.hypothesis().names()
+    };
+    let best = Some(friction);
+    assert_eq!(among(values, Vec::new(), best.clone()), ["viscous@1"]);
+    assert_eq!(among(Vec::new(), refitted.clone(), best), ["viscous@1"]);
+    assert_ne!(among(Vec::new(), refitted, None), [""; 0]);
+}
