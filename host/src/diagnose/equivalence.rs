@@ -90,7 +90,11 @@ impl Evaluator<'_> {
     }
 
     /// The model of the short windows and what is free of it, less a part of the explanation.
-    fn without(&self, chosen: &Hypothesis, part: &ReplaceablePart) -> (Model, Vec<ParameterPath>) {
+    pub(super) fn without(
+        &self,
+        chosen: &Hypothesis,
+        part: &ReplaceablePart,
+    ) -> (Model, Vec<ParameterPath>) {
         let (mut model, mut free) = (chosen.search.model.clone(), chosen.search.free.clone());
         match part {
             ReplaceablePart::Effect(effect) => {

@@ -226,14 +226,15 @@ struct Little {
 mod tests {
     use super::*;
     use crate::diagnose::search::tests::{evaluator, fitted};
-    use crate::fitting::FitData;
 
     /// What may stand in for the effect that this arm lacks.
     fn stand_ins(kind: &'static str, values: &[f64]) -> Vec<String> {
         let evaluator = evaluator(1, &[kind]);
         let chosen = fitted(&evaluator, &[kind], [values]);
         let part = ReplaceablePart::Effect(chosen.set[0]);
-        let rest = rest(&chosen, &evaluator.search);
+        let (model, free) = evaluator.without(&chosen, &part);
+        let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
+        let rest = fit(&model, &free, &evaluator.search, nodes, options);
         let others = evaluator.others(&chosen, &part, &rest);
         assert!(others.iter().all(|other| other.share >= LEAST_SHARE));
         let named = |other: &Other| match other.values.as_slice() {
@@ -241,16 +242,6 @@ mod tests {
             values => values[0].to_string(),
         };
         others.iter().map(named).collect()
-    }
-
-    /// The model less its only effect, with the derivatives there.
-    fn rest(chosen: &Hypothesis, search: &FitData) -> Fit {
-        let effect = chosen.set[0];
-        let (mut model, mut free) = (chosen.search.model.clone(), chosen.search.free.clone());
-        model.effects.retain(|instance| !effect.is(instance));
-        free.retain(|path| effect.paths().all(|own| own != *path));
-        let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
-        fit(&model, &free, search, nodes, options)
     }
 
     /// The stall torque says the same; friction of another law says something else.

@@ -21,13 +21,13 @@ fn a_missing_law_leaves_structure_and_the_right_one_none() {
     assert_eq!(evaluator.residual_structure(&friction), None);
 }
 
-/// Motions fitted to a model of another arm, in which nothing that they show returns.
+/// What a model leaves of motions whose readings run backwards is large, and is not what it leaves
+/// of those it was fitted to.
 #[test]
 fn what_returns_in_no_other_motion_is_no_structure() {
     let evaluator = evaluator(1, &["viscous"]);
     let fit = evaluator.base.fit();
     let mut unseen = evaluator.training.clone();
-    // The same readings in reverse: what pushed the arm on one way now does the other.
     for motion in &mut unseen.motions {
         motion.position_rad[0].reverse();
     }
