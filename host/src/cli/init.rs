@@ -15,6 +15,7 @@
 //! where a file was written) and `guesses` (`what`, `guess`, `why`).
 
 use super::{ExitStatus, Talk, input};
+use handstand::fitting::estimate;
 use handstand::log::init::Draft;
 use handstand::log::{LogRequest, RawLog};
 use handstand::output::vacant;
@@ -75,6 +76,11 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
     answer(args, &mut draft)?;
     if std::io::stdin().is_terminal() && std::io::stderr().is_terminal() {
         ask(args, &mut draft)?;
+    }
+    let said = draft.guesses.len();
+    estimate(&mut draft, &args.log)?;
+    for guess in draft.guesses.iter().skip(said) {
+        talk.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
     }
     let text = draft.toml()?;
     if let Some(file) = &args.output {

@@ -4,6 +4,7 @@ mod bam;
 pub(crate) mod cdr;
 pub mod check;
 mod csv;
+mod excerpts;
 mod folder;
 mod format;
 mod header;
@@ -33,6 +34,7 @@ mod write;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub(crate) use excerpts::excerpts;
 pub use check::{LogFinding, Proof, Severity, check};
 pub use folder::{expanded, unfolded};
 pub use format::LogFormat;

@@ -53,6 +53,9 @@ pub struct Model {
     pub gravity_m_s2: f64,
     /// Longest integration step, s; jitter may stretch it by up to a tenth.
     pub step_s: f64,
+    /// Whether masses, lengths and drives are guesses or rough estimates: what a simulation of them
+    /// says of a log's signs and units is then a hint alone.
+    pub guessed: bool,
     /// Links from the base outwards; link i follows joint i.
     pub links: Vec<Link>,
     /// Joints from the base outwards, as many as links.
@@ -79,6 +82,15 @@ pub enum AngleZero {
 }
 
 impl AngleZero {
+    /// As model files write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            AngleZero::Hanging => "hanging",
+            AngleZero::Upright => "upright",
+            AngleZero::Horizontal => "horizontal",
+        }
+    }
+
     /// The log's zero as an angle from hanging, rad.
     pub fn from_hanging_rad(self) -> f64 {
         match self {

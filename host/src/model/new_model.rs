@@ -23,6 +23,9 @@ pub struct ModelPlan {
     /// Gravity, m/s^2, where it is not the Earth's.
     #[serde(default)]
     pub gravity_m_s2: Option<f64>,
+    /// Whether its figures are guesses or rough estimates.
+    #[serde(default)]
+    pub guessed: bool,
     /// From the base outwards.
     pub links: Vec<LinkPlan>,
 }
@@ -84,6 +87,11 @@ pub fn model_toml(plan: &ModelPlan, head: &str, tail: &str) -> Result<String> {
     let _ = writeln!(text, "angles = {}", quoted(&plan.angles));
     if let Some(gravity) = plan.gravity_m_s2 {
         let _ = writeln!(text, "gravity_m_s2 = {}", number(gravity));
+    }
+    if plan.guessed {
+        text.push_str(
+            "guessed = true # until its figures are measured: a log's units are not judged by them\n",
+        );
     }
     for (index, link) in plan.links.iter().enumerate() {
         write_link(&mut text, index, link);
@@ -210,6 +218,7 @@ mod tests {
             angle_zero: "upright".into(),
             angles: "absolute".into(),
             gravity_m_s2: None,
+            guessed: false,
             links: drives.map(link).to_vec(),
         };
         let text = new_model_toml(&plan).unwrap();
@@ -237,6 +246,7 @@ mod tests {
             angle_zero: "hanging".into(),
             angles: "relative".into(),
             gravity_m_s2: None,
+            guessed: false,
             links,
         };
         let wrong = LinkPlan {

@@ -1,9 +1,8 @@
 //! Other kinds of drive that the input column may belong to.
 
-use super::remedy::{LogColumn, Remedy};
+use super::remedy::{LogColumn, Remedy, named_unit};
 use super::reread::written;
 use super::trial::{Effort, RemedyTrial, Trial};
-use crate::log::init::name_guess;
 use crate::model::{Dimension, Drive, Model, Motor, Unit};
 use rayon::prelude::*;
 
@@ -30,10 +29,7 @@ pub(super) fn drives(bench: &RemedyTrial) -> Vec<Remedy> {
 /// Whether the name of a joint's input says the unit that the file declares.
 fn names_its_unit(model: &Model, joint: usize) -> bool {
     let column = LogColumn::Input(joint).column(model);
-    column.is_some_and(|column| {
-        let named = name_guess(&column.name).unit;
-        named.is_some_and(|(unit, _)| unit == column.unit.name)
-    })
+    column.is_some_and(|column| named_unit(column) == Some(column.unit.name))
 }
 
 fn of_joint(bench: &RemedyTrial, joint: usize) -> Vec<Remedy> {

@@ -7,7 +7,7 @@ use super::trial::Trial;
 use crate::error::{Place, Result};
 use crate::log::{LogFinding, Motion, Proof, Severity};
 use crate::model::edit::{changed_lines, set_reading};
-use crate::model::{AngleZero, Angles, Dimension, Model, Unit};
+use crate::model::{Angles, Dimension, Model, Unit};
 use std::path::Path;
 
 /// A model's file: its path, for messages, and its text.
@@ -27,12 +27,20 @@ pub(super) fn finding(found: &Found, model: &Model, file: ModelFile) -> Result<L
     for rival in &found.rivals {
         remedies.push(lines(&rival.remedy, model, file)?);
     }
+    let doubt = doubt(trial, model);
+    let mut remedy = remedies.join("; or, which lowers the error as far, ");
+    if let Some(doubt) = doubt {
+        remedy = format!("{}: only if you know it, {remedy}", doubt.words());
+    }
     Ok(LogFinding {
         kind: kind(&trial.remedy),
-        severity: severity(&trial.remedy),
+        severity: match doubt.is_some() || trial.remedy.is_continuous() {
+            true => Severity::Warn,
+            false => Severity::Refuse,
+        },
         place: Some(Place::file(file.path)),
         what: format!("{}; {}", what(&trial.remedy, model), proof(trial)),
-        remedy: remedies.join("; or, which lowers the error as far, "),
+        remedy,
         proof: Some(Proof {
             before_rad: trial.before_rad,
             after_rad: trial.after_rad,
@@ -42,11 +50,36 @@ pub(super) fn finding(found: &Found, model: &Model, file: ModelFile) -> Result<L
     })
 }
 
-/// A sign, a unit or a drive is wrong or right; a zero or a shift may be the rig's own.
-fn severity(remedy: &Remedy) -> Severity {
-    match remedy.is_continuous() {
-        true => Severity::Warn,
-        false => Severity::Refuse,
+/// Why a simulation of the model can only hint at how a log is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Doubt {
+    /// Its values are guesses.
+    Guessed,
+    /// It is far from the log with the remedy, too.
+    FarOff,
+}
+
+/// A share of the motion that a model near a log leaves unexplained at most.
+const NEAR: f64 = 0.3;
+
+impl Doubt {
+    fn words(self) -> &'static str {
+        match self {
+            Doubt::Guessed => "the model's values are guesses, which cannot tell",
+            Doubt::FarOff => "the model is far from the log either way, so this is a hint",
+        }
+    }
+}
+
+/// A sign, a unit or a drive is wrong or right, and a zero or a shift may be the rig's own, where
+/// the model can tell.
+fn doubt(trial: &Trial, model: &Model) -> Option<Doubt> {
+    // Samples seconds apart need no model to be doubted.
+    match &trial.remedy {
+        Remedy::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => None,
+        _ if model.guessed => Some(Doubt::Guessed),
+        _ if trial.after > NEAR => Some(Doubt::FarOff),
+        _ => None,
     }
 }
 
@@ -83,11 +116,7 @@ fn what(remedy: &Remedy, model: &Model) -> String {
             format!("{} {count}{s} the other way round", names.join(" and "))
         }
         Remedy::AngleZero(zero) => {
-            let place = match zero {
-                AngleZero::Hanging => "hanging",
-                AngleZero::Upright => "upright",
-                AngleZero::Horizontal => "horizontal",
-            };
+            let place = zero.name();
             format!("the angles are zero where the first link is {place}")
         }
         Remedy::Offset(quantity, offset) => {
@@ -223,6 +252,10 @@ pub(super) fn unusable(
         Unusable::Clipped => {
             format!("{name} sits at a limit {count} times, up to {longest_s:.2} s")
         }
+        Unusable::HeldByHand => format!(
+            "the rig stands still for {longest_s:.2} s where it would fall, with nothing driving \
+             it: a hand holds it"
+        ),
     };
     let proof = format!(
         "with those rows the model leaves {} of the motion unexplained ({} mrad), without {} ({} \
@@ -237,12 +270,18 @@ pub(super) fn unusable(
         kind: match left_out.why {
             Unusable::Stalled => "stalled",
             Unusable::Clipped => "clipped",
+            Unusable::HeldByHand => "by_hand",
         },
-        severity: Severity::Warn,
+        // What a hand does no effect explains, and every effect is bent to it.
+        severity: match left_out.why {
+            Unusable::HeldByHand => Severity::Refuse,
+            Unusable::Stalled | Unusable::Clipped => Severity::Warn,
+        },
         place: motions
             .get(motion)
             .map(|motion| Place::file(&motion.source.path)),
         what: match lower {
+            _ if left_out.why == Unusable::HeldByHand => what,
             true => format!("{what}; {proof}"),
             false => format!("{what}; the model is at rest there too, so they teach nothing"),
         },

@@ -13,7 +13,7 @@ const PLAUSIBLE_RAD: std::ops::Range<f64> = 0.01..60.0;
 pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
     let (position, velocity) = (LogColumn::Position(joint), LogColumn::Velocity(joint));
     let Some(column) = position.column(model) else {
-        return of_speed(model, velocity);
+        return of_speed(model, motions, velocity);
     };
     let slope = speed_slope(motions, joint, |motion| {
         motion.velocity_rad_s[joint].as_deref()
@@ -26,7 +26,7 @@ pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<
     )];
     let travel_rad = travel_rad(motions, joint);
     let plausible = |unit: &Unit| PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / column.unit.si));
-    let units = other_units(model, position).into_iter().filter(plausible);
+    let units = other_units(model, motions, position).into_iter().filter(plausible);
     all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
     if joint > 0 && model.joints[joint].slide.is_none() {
         all.push(Remedy::Offset(position, column.offset + PI));
@@ -35,11 +35,11 @@ pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<
 }
 
 /// Other signs and units of a speed, if the logs have it.
-pub(super) fn of_speed(model: &Model, speed: LogColumn) -> Vec<Remedy> {
+pub(super) fn of_speed(model: &Model, motions: &[Motion], speed: LogColumn) -> Vec<Remedy> {
     if speed.column(model).is_none() {
         return Vec::new();
     }
-    let units = other_units(model, speed).into_iter();
+    let units = other_units(model, motions, speed).into_iter();
     let units = units.map(|unit| Remedy::Unit(vec![(speed, unit)]));
     units.chain([Remedy::Reverse(vec![speed])]).collect()
 }

@@ -1,12 +1,12 @@
 //! Samples that no change of the model file mends: a joint that stands still, an input cut off at
 //! a limit.
 
-use super::excerpts::excerpts;
+use super::by_hand::held_by_hand;
 use super::rating::{ModelReading, Rating};
 use super::remedy::LogColumn;
 use super::search::is_doubtful_time;
 use super::trial::Effort;
-use crate::log::Motion;
+use crate::log::{Motion, excerpts};
 use crate::model::Model;
 use std::ops::Range;
 
@@ -31,6 +31,8 @@ pub enum Unusable {
     Stalled,
     /// The input sits at a limit, and the rig did something else.
     Clipped,
+    /// A hand holds the rig: it stands still where it would fall.
+    HeldByHand,
 }
 
 /// Samples to leave out, with the proof.
@@ -44,8 +46,8 @@ pub struct LeaveOut {
     pub runs: Vec<(usize, Range<usize>)>,
     /// Duration of the longest run, s.
     pub longest_s: f64,
-    /// Share of the motion unexplained with the samples and without, as in [`super::Trial`]; none
-    /// where the model does as well in them.
+    /// Share of the motion unexplained with the samples and without, as in [`super::Trial`]; not a
+    /// number where no fit is the proof.
     pub before: f64,
     /// See `before`.
     pub after: f64,
@@ -66,6 +68,7 @@ pub fn leave_out(model: &Model, motions: &[Motion]) -> Vec<LeaveOut> {
         .filter_map(|joint| stalled(model, motions, joint));
     let mut found: Vec<LeaveOut> = stalled.collect();
     found.extend(joints.filter_map(|joint| clipped(model, motions, joint)));
+    found.extend(held_by_hand(model, motions));
     found
 }
 

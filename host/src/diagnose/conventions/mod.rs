@@ -5,12 +5,13 @@
 //! lowers the error clearly, and the errors are its proof. Samples that no remedy mends, of a
 //! joint that stands still or an input cut off at a limit, are named as rows to leave out.
 
+mod by_hand;
 mod continuous;
 mod drives;
-mod excerpts;
 mod findings;
 mod joint_remedies;
 mod leave_out;
+mod plain_friction;
 mod rating;
 mod remedy;
 mod reread;
@@ -109,7 +110,7 @@ fn readable(request: &LogRequest, model: &Model) -> Vec<Motion> {
 /// Share of the motion that the model leaves unexplained, from fitted start states: 0 nothing, 1 as
 /// much as going on at constant speed does; none where no joint moves.
 pub fn unexplained(model: &Model, motions: &[Motion]) -> Option<f64> {
-    let few = excerpts::excerpts(motions, search::SAMPLES);
+    let few = crate::log::excerpts(motions, search::SAMPLES);
     let reading = rating::ModelReading::new(model.clone(), few);
     reading.rated(trial::Effort::Starts).share()
 }

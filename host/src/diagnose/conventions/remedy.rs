@@ -1,8 +1,9 @@
 //! What may be wrong between a model file and its logs, each as the change that mends it.
 
 use super::joint_remedies::{of_motion, of_speed};
-use super::reread::reread;
+use super::reread::{reread, written};
 use crate::log::Motion;
+use crate::log::init::name_guess;
 use crate::model::{
     AngleZero, Angles, Column, ColumnMean, Dimension, Drive, Model, ParameterPath, Unit,
 };
@@ -161,11 +162,11 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
     }
     for joint in 0..model.link_count() {
         all.extend(of_motion(model, motions, joint));
-        all.extend(of_speed(model, LogColumn::Rate(joint)));
+        all.extend(of_speed(model, motions, LogColumn::Rate(joint)));
         if model.joints[joint].drive.is_driven() {
             let input = LogColumn::Input(joint);
             all.push(Remedy::Reverse(vec![input]));
-            let units = other_units(model, input).into_iter();
+            let units = other_units(model, motions, input).into_iter();
             all.extend(units.map(|unit| Remedy::Unit(vec![(input, unit)])));
         }
     }
@@ -183,19 +184,51 @@ pub(super) fn travel_rad(motions: &[Motion], joint: usize) -> f64 {
     angles().fold(f64::NEG_INFINITY, f64::max) - angles().fold(f64::INFINITY, f64::min)
 }
 
-/// The other units of the column's dimension.
-pub(super) fn other_units(model: &Model, quantity: LogColumn) -> Vec<Unit> {
+/// The other units of the column's dimension: the one that its name says where it says one, counts
+/// only where every number written is whole, for no encoder gives others.
+pub(super) fn other_units(model: &Model, motions: &[Motion], quantity: LogColumn) -> Vec<Unit> {
     let Some(column) = quantity.column(model) else {
         return Vec::new();
     };
     let dimension = column.unit.dimension;
     let mut units: Vec<Unit> = dimension.plain_units().collect();
-    if dimension == Dimension::Angle {
+    if dimension == Dimension::Angle && are_counts(model, motions, quantity) {
         let ticks = TICKS_PER_TURN.into_iter();
         units.extend(ticks.filter_map(|ticks| Unit::named("ticks", Some(ticks))));
     }
     units.retain(|unit| (unit.si / column.unit.si - 1.0).abs() > 0.01);
+    if let Some(named) = named_unit(column) {
+        units.retain(|unit| unit.name == named);
+    }
     units
+}
+
+/// The unit that a column's name says, where it measures what the column is declared as.
+pub(super) fn named_unit(column: &Column) -> Option<&'static str> {
+    let (name, ticks) = name_guess(&column.name).unit?;
+    let unit = Unit::named(name, ticks.or(Some(1.0)))?;
+    (unit.dimension == column.unit.dimension).then_some(name)
+}
+
+/// Numbers written within this of a whole one are whole.
+const WHOLE: f64 = 1e-6;
+
+/// Whether every number written for a quantity is whole, as encoders count; of several servos a
+/// mean is read, which may lie between.
+fn are_counts(model: &Model, motions: &[Motion], quantity: LogColumn) -> bool {
+    let columns = quantity.columns(model);
+    let LogColumn::Position(joint) = quantity else {
+        return false;
+    };
+    let servos = columns.len() as f64;
+    let Some(mean) = model.log.joints[joint].position.as_ref() else {
+        return false;
+    };
+    let angles = motions.iter().flat_map(|motion| &motion.position_rad[joint]);
+    let mut counts = angles
+        .filter(|angle| angle.is_finite())
+        .map(|angle| servos * written(*angle, mean));
+    counts.all(|count| (count - count.round()).abs() <= WHOLE * count.abs().max(1.0))
 }
 
 /// The other units of time in which the samples would lie between 0.5 ms and 0.5 s apart, where
@@ -206,7 +239,8 @@ pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
         return Vec::new();
     }
     let declared = model.log.time.unit;
-    // Stamps are text, which no unit of numbers reads, and the other way round.
+    // Samples so far apart are doubted whatever the column is called. Stamps are text, which no unit
+    // of numbers reads, and the other way round.
     let is_text = |unit: &Unit| unit.name == "iso8601";
     if is_text(&declared) {
         return Vec::new();

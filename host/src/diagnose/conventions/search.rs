@@ -2,13 +2,13 @@
 
 use super::continuous::{LEAST_ZERO_RAD, continuous};
 use super::drives::drives;
-use super::excerpts::excerpts;
 use super::leave_out::without_stalled;
+use super::plain_friction::rivals_friction;
 use super::rating::ModelReading;
 use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
 use super::trial::{Effort, RemedyTrial, Trial, scales_torque_by};
 use crate::fitting::coarsened;
-use crate::log::Motion;
+use crate::log::{Motion, excerpts};
 use crate::model::{Model, Unit};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -120,8 +120,9 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
         (given.ratio() < 1.0).then_some(refitted)
     });
     let mut judged: Vec<Trial> = judged.collect();
-    let mut off = BTreeMap::new();
+    let (mut off, mut rubbing) = (BTreeMap::new(), BTreeMap::new());
     judged.retain(|trial| beats_a_wrong_value(bench, trial, &mut off));
+    judged.retain(|trial| beats_friction(bench, trial, &mut rubbing));
     judged
 }
 
@@ -179,6 +180,22 @@ fn beats_a_wrong_value(
     let off = fitted.iter().copied().chain(scaled);
     let least = off.fold(f64::INFINITY, f64::min);
     trial.ratio() < BEATS * least
+}
+
+/// Whether a remedy leaves less than plain friction at its joint does, which the model may lack, and
+/// less than no input at all. `rubbing` holds what they leave for the joints that were asked for.
+fn beats_friction(
+    bench: &RemedyTrial,
+    trial: &Trial,
+    rubbing: &mut BTreeMap<usize, Option<f64>>,
+) -> bool {
+    let Some(joint) = rivals_friction(&trial.remedy) else {
+        return true;
+    };
+    let left = rubbing
+        .entry(joint)
+        .or_insert_with(|| bench.with_plain_friction(joint));
+    left.is_none_or(|left| trial.ratio() < BEATS * left)
 }
 
 /// What a remedy must do to be believed.

@@ -1,5 +1,6 @@
 //! A remedy tried: the error with it and without.
 
+use super::plain_friction::left_by_friction;
 use super::rating::{ModelReading, Rating};
 use super::remedy::{LogColumn, Remedy};
 use crate::diagnose::values::values_of;
@@ -184,6 +185,12 @@ impl RemedyTrial {
         let before = reading.rated(Effort::ValuesToTheEnd).share()?;
         let least = least.min_by(f64::total_cmp)?;
         Some(least / before.max(1e-12))
+    }
+
+    /// Error with plain friction at a joint, or without its input, over the error without; none
+    /// where no joint says anything, or times are in doubt.
+    pub fn with_plain_friction(&self, joint: usize) -> Option<f64> {
+        left_by_friction(&self.given.as_ref()?.reading, joint)
     }
 
     /// Error with a joint's torques multiplied by a factor over the error without, on windows as a

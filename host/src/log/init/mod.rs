@@ -2,6 +2,7 @@
 //! how it swings; each guess with its reason.
 
 mod columns;
+mod estimated;
 mod evidence;
 mod log_guess;
 mod name;
@@ -16,7 +17,7 @@ pub(crate) use name::name_guess;
 
 use crate::error::{Error, Result};
 use crate::log::RawLog;
-use crate::model::Unit;
+use crate::model::{EffectInstance, Unit};
 use crate::model::new_model::{ModelPlan, model_toml};
 use columns::log_guess;
 use evidence::Evidence;
@@ -66,6 +67,10 @@ pub struct Draft {
     pub guesses: Vec<Guess>,
     /// A motion ends where time jumps by more, s.
     pub split_at_gap_s: Option<f64>,
+    /// Friction that a log tells of.
+    pub friction: Vec<EffectInstance>,
+    /// Addresses of the values that a log determines, once that is known.
+    pub free: Option<Vec<String>>,
 }
 
 impl Draft {
@@ -92,6 +97,7 @@ impl Draft {
             angle_zero: angle_zero.to_string(),
             angles: angles.to_string(),
             gravity_m_s2: None,
+            guessed: true,
             links,
         };
         let split_at_gap_s = gap_s(&time_s, &mut guesses);
@@ -100,6 +106,8 @@ impl Draft {
             plan,
             guesses,
             split_at_gap_s,
+            friction: Vec::new(),
+            free: None,
         })
     }
 
@@ -177,7 +185,7 @@ impl Draft {
     /// Notes an answer in place of a guess.
     fn said(&mut self, what: &str, answer: &str) {
         self.guesses.retain(|guess| guess.what != what);
-        self.guesses.push(Guess::new(what, answer, "as you say"));
+        self.guesses.push(Guess::new(what, answer, estimated::AS_YOU_SAY));
     }
 
     /// The model file.

@@ -78,6 +78,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         angles: Angles::Relative,
         gravity_m_s2: 9.81,
         step_s: 0.001,
+        guessed: false,
         links: vec![link; log.joints.len()],
         joints: vec![Joint::from(drive); log.joints.len()],
         effects: Vec::new(),

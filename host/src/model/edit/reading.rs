@@ -2,7 +2,7 @@
 
 use super::{checked, document, misfit, number, put, tables};
 use crate::error::Result;
-use crate::model::{AngleZero, Angles, Column, Drive, Model, Motor, Unit};
+use crate::model::{Angles, Column, Drive, Model, Motor, Unit};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
@@ -24,12 +24,7 @@ pub fn set_reading(text: &str, path: &Path, old: &Model, new: &Model) -> Result<
 fn set_rig(document: &mut DocumentMut, old: &Model, new: &Model) -> Option<()> {
     let rig = document.get_mut("rig")?.as_table_like_mut()?;
     if old.angle_zero != new.angle_zero {
-        let name = match new.angle_zero {
-            AngleZero::Hanging => "hanging",
-            AngleZero::Upright => "upright",
-            AngleZero::Horizontal => "horizontal",
-        };
-        put(rig, "angle_zero", name.into());
+        put(rig, "angle_zero", new.angle_zero.name().into());
     }
     if old.angles != new.angles {
         let name = match new.angles {
@@ -185,6 +180,7 @@ pub fn changed_lines(old: &str, new: &str) -> Vec<(Option<usize>, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::AngleZero;
 
     const TEXT: &str = "[rig]\nname = \"a\"\nangle_zero = \"hanging\"\n[[link]]\ncom_m = 0.1\n\
         mass_kg = 1.0\ninertia_kg_m2 = 1e-3\n[[joint]]\ndrive = \"torque\" # geared\n[log]\n\

@@ -18,6 +18,7 @@ pub(super) fn toml(
         write_effects(&mut effects, index, link, left_out);
     }
     let plan = ModelPlan {
+        guessed: false,
         name: name.replace(char::is_control, " "),
         angle_zero: "hanging".to_string(),
         angles: "relative".to_string(),

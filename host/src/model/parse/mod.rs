@@ -43,7 +43,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     root.only(&["rig", "link", "joint", "expression", "effect", "fit", "log"])?;
 
     let rig = root.required_table("rig")?;
-    rig.only(&["name", "angle_zero", "angles", "gravity_m_s2", "step_s"])?;
+    rig.only(&["name", "angle_zero", "angles", "gravity_m_s2", "step_s", "guessed"])?;
     let links = links(&root)?;
     let joints = joints(&root, links.len())?;
     let laws = expressions::read(&root)?;
@@ -55,6 +55,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
         angles: rig.choice("angles", &ANGLES)?.unwrap_or(Angles::Relative),
         gravity_m_s2: rig.number("gravity_m_s2", GRAVITY)?.unwrap_or(9.81),
         step_s: rig.number("step_s", STEP_S)?.unwrap_or(0.005),
+        guessed: rig.flag("guessed")?,
         links,
         joints,
         effects,

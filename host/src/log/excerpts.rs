@@ -1,13 +1,13 @@
-//! Excerpts of long logs, so that a check takes seconds however long they are.
+//! Excerpts of long logs, so that a check or a rough estimate takes seconds however long they are.
 
-use crate::log::Motion;
+use super::Motion;
 
 /// Samples of an excerpt.
 const LENGTH: usize = 400;
 
 /// Pieces of the motions, evenly spread, of some `most` samples in all; the motions themselves
 /// where they have no more.
-pub(super) fn excerpts(motions: &[Motion], most: usize) -> Vec<Motion> {
+pub(crate) fn excerpts(motions: &[Motion], most: usize) -> Vec<Motion> {
     let samples: usize = motions.iter().map(Motion::len).sum();
     if samples <= most {
         return motions.to_vec();

@@ -1,0 +1,273 @@
+//! A drafted model made usable: what a log tells of its guesses is estimated from the log.
+//!
+//! A draft of guesses alone may be so far from its log that no comparison says anything: an arm
+//! without friction whirls away. Here plain friction is added, and what the rig's drives determine
+//! (mass times lever, friction, gain or limit of speed) is fitted roughly to short windows, from
+//! starts an order of magnitude apart. Of a driven arm other zeros of the angles and other signs of
+//! the inputs are tried, too. What the log does not determine stays a guess and is not freed.
+
+mod values;
+
+use super::covariance::{Interval, intervals};
+use super::data::FitData;
+use super::fit::{Fit, FitOptions};
+use super::horizon::Horizon;
+use super::solve::fit;
+use super::staged::fit_staged;
+use super::step_size::coarsened;
+use crate::error::Result;
+use crate::log::init::Draft;
+use crate::log::{LogRequest, Motion, excerpts, read};
+use crate::model::{AngleZero, Model, ParameterPath};
+use crate::output::number::{measured, mrad};
+use rayon::prelude::*;
+use std::path::Path;
+use values::{free_of, is_friction, rubbing, starts};
+
+/// Length of the windows, s, that the best is fitted to: little friction shows in them, too.
+const WINDOW_S: f64 = 3.0;
+/// Length of those that starts are compared on: from a guess that is far off the way back is found.
+const SHORT_S: f64 = 0.5;
+/// Samples that starts are compared on, and that the best is fitted to.
+const FEW: usize = 2000;
+const SAMPLES: usize = 6000;
+/// Iterations that tell a promising start from a hopeless one.
+const SCREENING: usize = 6;
+/// Iterations that the most promising goes on for.
+const ON: usize = 12;
+/// Another zero or sign must leave less than this share of the error.
+const CLEARLY: f64 = 0.7;
+/// A value is told by the log where its interval reaches no further than its own size.
+const TOLD: f64 = 1.0;
+/// A joint that moves less than so many standard deviations of its reading tells nothing.
+const MOVES: f64 = 20.0;
+
+/// How an arm's log may be meant: where its angles are zero, and which inputs count the other way.
+#[derive(Debug, Clone, PartialEq)]
+struct Meaning {
+    zero: AngleZero,
+    reversed: Vec<bool>,
+}
+
+/// A meaning with the roughly fitted model.
+struct Candidate {
+    meaning: Meaning,
+    model: Model,
+    rms_rad: f64,
+}
+
+/// Replaces a draft's guesses by what its log tells, adds plain friction, and notes each estimate
+/// with its 95 % interval among the draft's guesses. A log that is refused, or in which nothing
+/// moves, leaves the draft as it is, and a note says why.
+///
+/// # Errors
+/// Figures that make no model.
+pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
+    let drafted = Model::parse(&draft.toml()?, Path::new("model.toml"))?;
+    let motions = match read(std::slice::from_ref(request), &drafted.log) {
+        Ok(motions) => motions,
+        Err(error) => {
+            draft.note("values", "guesses alone", &format!("the log is refused: {error}"));
+            return Ok(());
+        }
+    };
+    let rubbing = rubbing(&drafted, &motions);
+    let Some(best) = best_meaning(&rubbing, draft, &motions) else {
+        draft.note("values", "guesses alone", "nothing moves in the log");
+        return Ok(());
+    };
+    let Meaning { zero, reversed } = &best.meaning;
+    if *zero != drafted.angle_zero {
+        let why = format!("no other zero lets a model follow the log, {} mrad", mrad(best.rms_rad));
+        draft.conclude_zero(zero.name(), &why);
+    }
+    for joint in (0..reversed.len()).filter(|joint| reversed[*joint]) {
+        draft.reverse_input(joint);
+    }
+    let few = excerpts(&read_so(&motions, reversed), SAMPLES);
+    let data = windows(&best.model, few, WINDOW_S);
+    let free = free_of(&best.model, draft);
+    // Short windows may lead astray where little is lost in them.
+    let begun = [&rubbing, &best.model].map(|model| Model {
+        angle_zero: *zero,
+        ..model.clone()
+    });
+    let fitted = begun.par_iter().map(|model| fit_staged(model, &free, &data));
+    let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
+        return Ok(());
+    };
+    let (model, told) = told_by(&best.model, &data, free);
+    let friction = model.effects.iter().filter(|effect| is_friction(effect));
+    draft.friction = friction.cloned().collect();
+    draft.free = Some(told.iter().map(|(path, _)| path.to_string()).collect());
+    if !told.is_empty() && !drafted.joints.iter().any(|joint| joint.drive.name() == "torque") {
+        let why = if draft.is_known("mass") { "as you say" } else { "a guess: weigh it, --mass" };
+        draft.note("scale", "all torques and inertias go with the first link's mass", why);
+    }
+    for (path, interval) in told {
+        let Some(value) = path.get(&model) else {
+            continue;
+        };
+        let words = measured(value, interval.low, interval.high, path.unit());
+        draft.note(&path.to_string(), &words, "estimated from the log");
+        draft.take(&path, value);
+    }
+    Ok(())
+}
+
+fn windows(model: &Model, motions: Vec<Motion>, seconds: f64) -> FitData {
+    let horizon = Horizon::Seconds(seconds);
+    FitData::new(model, motions, horizon).cut_evenly(horizon)
+}
+
+/// The meaning of the log that a rough fit explains best; the drafted one unless another is clearly
+/// better. None where nothing moves.
+fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Candidate> {
+    let few = windows(model, excerpts(motions, FEW), SHORT_S);
+    if few.windows.is_empty() || !moves(&few) {
+        return None;
+    }
+    let model = &coarsened(model, &few);
+    let free = free_of(model, draft);
+    let fitted = |meaning: Meaning| {
+        let data = few.clone().measured_in(read_so(&few.motions, &meaning.reversed));
+        let begun = Model {
+            angle_zero: meaning.zero,
+            ..model.clone()
+        };
+        let screened = starts(&begun, &free).into_par_iter().map(|start| {
+            fit(&start, &free, &data, None, FitOptions::iterations(SCREENING).rough())
+        });
+        let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        let best = best.resume(&data, FitOptions::iterations(ON).rough());
+        let rms_rad = best.rms(&data);
+        Some(Candidate {
+            meaning,
+            model: best.model,
+            rms_rad,
+        })
+    };
+    let all = meanings(model, draft).into_par_iter().filter_map(fitted);
+    let mut all: Vec<Candidate> = all.collect();
+    all.retain(|candidate| candidate.rms_rad.is_finite());
+    let drafted = all.first()?.rms_rad;
+    let by_error = |a: &Candidate, b: &Candidate| a.rms_rad.total_cmp(&b.rms_rad);
+    let best = all.iter().min_by(|a, b| by_error(a, b))?;
+    let chosen = match best.rms_rad < CLEARLY * drafted {
+        true => best.meaning.clone(),
+        false => all.first()?.meaning.clone(),
+    };
+    all.into_iter().find(|candidate| candidate.meaning == chosen)
+}
+
+fn cost(fit: &Fit) -> f64 {
+    let cost = fit.residuals.cost();
+    if cost.is_finite() { cost } else { f64::INFINITY }
+}
+
+/// Whether some joint moves beyond its noise.
+fn moves(data: &FitData) -> bool {
+    (0..data.joints()).any(|joint| {
+        let values = || {
+            let motions = 0..data.motions.len();
+            let values = motions.flat_map(|motion| data.measured(motion, joint));
+            values.copied().filter(|value| value.is_finite())
+        };
+        let low = values().fold(f64::INFINITY, f64::min);
+        let high = values().fold(f64::NEG_INFINITY, f64::max);
+        high - low > MOVES * data.sigma[joint]
+    })
+}
+
+/// The drafted meaning first. Of a driven arm the zero may lie elsewhere, and an input that is no
+/// goal may count the other way round.
+fn meanings(model: &Model, draft: &Draft) -> Vec<Meaning> {
+    let joints = model.link_count();
+    let drafted = Meaning {
+        zero: model.angle_zero,
+        reversed: vec![false; joints],
+    };
+    let driven = model.driven_joints();
+    if driven.is_empty() {
+        return vec![drafted];
+    }
+    let mut zeros = vec![model.angle_zero];
+    if !draft.is_known("angle zero") {
+        let all = [AngleZero::Hanging, AngleZero::Upright, AngleZero::Horizontal];
+        zeros.extend(all.into_iter().filter(|zero| *zero != model.angle_zero));
+    }
+    let mut signs = vec![drafted.reversed.clone()];
+    for joint in driven {
+        let is_goal = ["position", "speed"].contains(&model.joints[joint].drive.name());
+        if is_goal {
+            continue;
+        }
+        let mut flipped = signs.clone();
+        flipped.iter_mut().for_each(|signs| signs[joint] = true);
+        signs.extend(flipped);
+    }
+    let pairs = signs
+        .iter()
+        .flat_map(|reversed| zeros.iter().map(move |zero| (*zero, reversed.clone())));
+    pairs.map(|(zero, reversed)| Meaning { zero, reversed }).collect()
+}
+
+/// The motions with the inputs of some joints the other way round.
+fn read_so(motions: &[Motion], reversed: &[bool]) -> Vec<Motion> {
+    let mut motions = motions.to_vec();
+    for motion in &mut motions {
+        for (input, _) in motion.input.iter_mut().zip(reversed).filter(|(_, r)| **r) {
+            input.iter_mut().flatten().for_each(|value| *value = -*value);
+        }
+    }
+    motions
+}
+
+/// The model fitted, and those of the values that the motions determine, with their intervals. What
+/// they do not determine goes back to where it began, friction to none.
+fn told_by(
+    begun: &Model,
+    data: &FitData,
+    mut free: Vec<ParameterPath>,
+) -> (Model, Vec<(ParameterPath, Interval)>) {
+    let mut model = begun.clone();
+    loop {
+        let found = fit_staged(&model, &free, data);
+        let Some(intervals) = intervals(&found, data).map(|(intervals, _)| intervals) else {
+            // The least important stands last.
+            let Some(path) = free.pop() else {
+                return (model, Vec::new());
+            };
+            forget(&mut model, &path, begun);
+            continue;
+        };
+        let reach = |index: usize| {
+            let interval = &intervals[index];
+            let size = free[index].get(&found.model).unwrap_or(0.0).abs();
+            0.5 * (interval.high - interval.low) / size.max(1e-12)
+        };
+        let on_bound = found.on_bound();
+        let untold = |index: &usize| on_bound[*index] || reach(*index).is_nan() || reach(*index) > TOLD;
+        let worst = (0..free.len()).filter(untold);
+        let Some(worst) = worst.max_by(|a, b| reach(*a).total_cmp(&reach(*b))) else {
+            let told = free.into_iter().zip(intervals).collect();
+            return (found.model, told);
+        };
+        model = found.model;
+        let path = free.remove(worst);
+        forget(&mut model, &path, begun);
+    }
+}
+
+/// Takes a value back: friction out, another to its guess.
+fn forget(model: &mut Model, path: &ParameterPath, begun: &Model) {
+    let before = model.effects.len();
+    model.effects.retain(|effect| {
+        !is_friction(effect) || ParameterPath::of_effect(effect).all(|own| own != *path)
+    });
+    if model.effects.len() == before
+        && let Some(value) = path.get(begun)
+    {
+        let _ = path.set(model, value);
+    }
+}
