@@ -4,6 +4,7 @@ pub use handstand_xtask::firmware;
 
 pub mod bench;
 pub mod experiment;
+pub mod first_hour;
 pub mod hidden;
 #[cfg(unix)]
 pub mod kills;

@@ -86,12 +86,14 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     }
     let few = excerpts(&read_so(&motions, reversed), SAMPLES);
     let data = windows(&best.model, few, WINDOW_S);
-    let free = free_of(&best.model, draft);
-    // Short windows may lead astray where little is lost in them.
-    let begun = [&rubbing, &best.model].map(|model| Model {
-        angle_zero: *zero,
-        ..model.clone()
-    });
+    let free = free_of(&rubbing, draft);
+    // Short windows may lead astray where they show little: a swing of seconds.
+    let mut begun = match drafted.driven_joints().is_empty() {
+        true => starts(&rubbing, &free),
+        false => vec![rubbing],
+    };
+    begun.iter_mut().for_each(|model| model.angle_zero = *zero);
+    begun.push(best.model);
     let fitted = begun.par_iter().map(|model| fit_staged(model, &free, &data));
     let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return Ok(());

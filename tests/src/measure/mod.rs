@@ -6,6 +6,7 @@ mod bench_read;
 #[cfg(unix)]
 mod bench_record;
 mod detection;
+mod first_hour;
 mod hidden;
 mod next;
 mod page;
@@ -39,6 +40,8 @@ enum Chore {
     Detection(detection::Args),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
     Next(next::Args),
+    /// Walk the README's path on drawn rigs
+    FirstHour(first_hour::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
     /// Balance virtual robots before and after they were measured
@@ -67,6 +70,7 @@ impl Chores {
             Chore::Hidden(args) => hidden::run(args),
             Chore::Detection(args) => detection::run(args),
             Chore::Next(args) => next::run(args),
+            Chore::FirstHour(args) => first_hour::run(args),
             Chore::Real(args) => real::run(args),
             Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),

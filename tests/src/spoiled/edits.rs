@@ -24,6 +24,36 @@ pub(super) fn declare(model: &mut Model, joint: usize, unit: &str, ticks: Option
     }
 }
 
+/// Gives the columns of joints names that say no unit.
+pub(super) fn anonymise(model: &mut Model) {
+    for (joint, columns) in model.log.joints.iter_mut().enumerate() {
+        let named = [
+            (&mut columns.position, "place"),
+            (&mut columns.velocity, "quickness"),
+            (&mut columns.rate, "turning"),
+            (&mut columns.input, "asked"),
+        ];
+        for (mean, name) in named {
+            for (servo, column) in mean.iter_mut().flat_map(|mean| mean.columns_mut()).enumerate() {
+                column.name = format!("{name} {joint} {servo}");
+            }
+        }
+    }
+}
+
+/// Rounds the angles to whole numbers as they are written, as encoders count.
+pub(super) fn count_whole(model: &Model, motions: &mut [Motion], joint: usize) {
+    let position = model.log.joints[joint].position.as_ref();
+    let Some(column) = position.and_then(|mean| mean.columns().first()) else {
+        return;
+    };
+    let (unit, zero) = (column.unit.si, column.offset);
+    for motion in motions {
+        let whole = |q: &mut f64| *q = zero + ((*q - zero) / unit).round() * unit;
+        motion.position_rad[joint].iter_mut().for_each(whole);
+    }
+}
+
 pub(super) fn scale_position(motions: &mut [Motion], joint: usize, factor: f64) {
     for motion in motions {
         motion.position_rad[joint]

@@ -1,7 +1,7 @@
 //! Ways to spoil a log, or the model file's account of it, and what mends each.
 
 use super::edits::{
-    another_drive, clip, declare, input_factor, scale_input, scale_position, stall,
+    anonymise, another_drive, clip, count_whole, declare, input_factor, scale_input, scale_position, stall,
 };
 use super::rig::Rig;
 use handstand::Model;
@@ -133,6 +133,8 @@ impl Spoiling {
             motions: rig.motions.clone(),
         };
         let (model, motions) = (&mut spoiled.model, &mut spoiled.motions);
+        // A unit that a column's name says is not doubted.
+        anonymise(model);
         match *self {
             Spoiling::PositionSign(joint) => scale_position(motions, joint, -1.0),
             Spoiling::InputSign(joint) => scale_input(motions, joint, -1.0),
@@ -153,10 +155,12 @@ impl Spoiling {
                 // Whatever the file declared, counts are what the log now holds.
                 scale_position(motions, joint, 4096.0 / TAU);
                 declare(model, joint, "rad", None);
+                count_whole(model, motions, joint);
             }
             Spoiling::CountsPerTurn(joint) => {
                 declare(model, joint, "ticks", Some(1024.0));
                 scale_position(motions, joint, 4.0);
+                count_whole(model, motions, joint);
             }
             Spoiling::InputUnit(joint) => scale_input(motions, joint, input_factor(model, joint)),
             Spoiling::Angles => {

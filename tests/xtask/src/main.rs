@@ -53,6 +53,8 @@ enum Chore {
     Peers(Words),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
     Next(Words),
+    /// Walk the README's path on drawn rigs
+    FirstHour(Words),
     /// Diagnose public logs of real rigs
     Real(Words),
     /// Balance virtual robots before and after they were measured
@@ -91,6 +93,7 @@ fn main() -> ExitCode {
         Chore::Hidden(words) => ("hidden", words),
         Chore::Peers(words) => ("peers", words),
         Chore::Next(words) => ("next", words),
+        Chore::FirstHour(words) => ("first-hour", words),
         Chore::Real(words) => ("real", words),
         Chore::RobotDemo(words) => ("robot-demo", words),
         Chore::Spoiled(words) => ("spoiled", words),

@@ -135,7 +135,6 @@ pub(super) fn starts(model: &Model, free: &[ParameterPath]) -> Vec<Model> {
         }
         start
     };
-    let scales: &[f64] = if model.driven_joints().is_empty() { &SCALES[..1] } else { &SCALES };
-    let pairs = scales.iter().flat_map(|scale| FRICTIONS.map(|friction| (*scale, friction)));
+    let pairs = SCALES.iter().flat_map(|scale| FRICTIONS.map(|friction| (*scale, friction)));
     pairs.map(|(scale, friction)| scaled(scale, friction)).collect()
 }

@@ -187,14 +187,23 @@ pub fn gravity_of_torques(
     Some((zero, sin.hypot(cos)))
 }
 
+/// Share of the widest swing that a half swing must lead away from the rest.
+const AWAY: f64 = 0.1;
+
 /// Length of an even rod that swings as often about its rest as these angles do, m; none where
 /// they do not swing.
 pub fn rod_length_m(time_s: &[f64], angle_rad: &[f64], gravity_m_s2: f64) -> Option<f64> {
     let rest = median(angle_rad);
-    let mut crossings = Vec::new();
-    for k in 1..time_s.len().min(angle_rad.len()) {
-        if (angle_rad[k - 1] < rest) && (angle_rad[k] >= rest) {
-            crossings.push(time_s[k]);
+    let widest = angle_rad.iter().map(|angle| (angle - rest).abs());
+    let beyond = AWAY * widest.filter(|away| away.is_finite()).fold(0.0, f64::max);
+    let (mut crossings, mut below) = (Vec::new(), false);
+    for (time_s, angle) in time_s.iter().zip(angle_rad) {
+        // Noise about the rest is no swing: each half must lead away from it.
+        if angle - rest < -beyond {
+            below = true;
+        } else if below && angle - rest > beyond {
+            crossings.push(*time_s);
+            below = false;
         }
     }
     let periods: Vec<f64> = crossings.windows(2).map(|pair| pair[1] - pair[0]).collect();
