@@ -18,14 +18,14 @@ use super::step_size::coarsened;
 use crate::error::Result;
 use crate::log::init::Draft;
 use crate::log::{LogRequest, Motion, excerpts, read};
-use crate::model::{AngleZero, Model, ParameterPath};
+use crate::model::{AngleZero, Link, LinkField, Model, ParameterPath};
 use crate::output::number::{measured, mrad};
 use rayon::prelude::*;
 use std::path::Path;
 use values::{free_of, is_friction, rubbing, starts};
 
 /// Length of the windows, s, that the best is fitted to: little friction shows in them, too.
-const WINDOW_S: f64 = 3.0;
+const WINDOW_S: f64 = 2.0;
 /// Length of those that starts are compared on: from a guess that is far off the way back is found.
 const SHORT_S: f64 = 0.5;
 /// Samples that starts are compared on, and that the best is fitted to.
@@ -37,8 +37,12 @@ const SCREENING: usize = 6;
 const ON: usize = 12;
 /// Another zero or sign must leave less than this share of the error.
 const CLEARLY: f64 = 0.7;
-/// A value is told by the log where its interval reaches no further than its own size.
-const TOLD: f64 = 1.0;
+/// A value is told by the log where its interval reaches no further than so many times its size.
+const TOLD: f64 = 3.0;
+/// Halvings of a lever.
+const LEVERS: usize = 4;
+/// Estimates beyond so many times a guess, either way, are none.
+const FAR: f64 = 30.0;
 /// A joint that moves less than so many standard deviations of its reading tells nothing.
 const MOVES: f64 = 20.0;
 
@@ -67,7 +71,11 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     let motions = match read(std::slice::from_ref(request), &drafted.log) {
         Ok(motions) => motions,
         Err(error) => {
-            draft.note("values", "guesses alone", &format!("the log is refused: {error}"));
+            draft.note(
+                "values",
+                "guesses alone",
+                &format!("the log is refused: {error}"),
+            );
             return Ok(());
         }
     };
@@ -78,7 +86,10 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     };
     let Meaning { zero, reversed } = &best.meaning;
     if *zero != drafted.angle_zero {
-        let why = format!("no other zero lets a model follow the log, {} mrad", mrad(best.rms_rad));
+        let why = format!(
+            "no other zero lets a model follow the log, {} mrad",
+            mrad(best.rms_rad)
+        );
         draft.conclude_zero(zero.name(), &why);
     }
     for joint in (0..reversed.len()).filter(|joint| reversed[*joint]) {
@@ -94,17 +105,42 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     };
     begun.iter_mut().for_each(|model| model.angle_zero = *zero);
     begun.push(best.model);
-    let fitted = begun.par_iter().map(|model| fit_staged(model, &free, &data));
+    let fitted = begun
+        .par_iter()
+        .map(|model| fit_staged(model, &free, &data));
     let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return Ok(());
     };
-    let (model, told) = told_by(&best.model, &data, free);
+    let (model, told) = told_by(&drafted, &best.model, &data, free, draft.is_known("mass"));
     let friction = model.effects.iter().filter(|effect| is_friction(effect));
     draft.friction = friction.cloned().collect();
     draft.free = Some(told.iter().map(|(path, _)| path.to_string()).collect());
-    if !told.is_empty() && !drafted.joints.iter().any(|joint| joint.drive.name() == "torque") {
-        let why = if draft.is_known("mass") { "as you say" } else { "a guess: weigh it, --mass" };
-        draft.note("scale", "all torques and inertias go with the first link's mass", why);
+    if !told.is_empty()
+        && !drafted
+            .joints
+            .iter()
+            .any(|joint| joint.drive.name() == "torque")
+    {
+        let why = if draft.is_known("mass") {
+            "as you say"
+        } else {
+            "a guess: weigh it, --mass"
+        };
+        draft.note(
+            "scale",
+            "all torques and inertias go with the first link's mass",
+            why,
+        );
+    }
+    for (index, link) in model.links.iter().enumerate() {
+        if link.com_m != drafted.links[index].com_m {
+            let at = |field: LinkField| ParameterPath::Link { index, field };
+            draft.take(&at(LinkField::Com), link.com_m);
+            draft.take(&at(LinkField::Mass), link.mass_kg);
+            let words = format!("{} kg at {} m", link.mass_kg, link.com_m);
+            let why = "a guess: with a longer lever no inertia would be left";
+            draft.note(&format!("mass of link {}", index + 1), &words, why);
+        }
     }
     for (path, interval) in told {
         let Some(value) = path.get(&model) else {
@@ -132,13 +168,21 @@ fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Cand
     let model = &coarsened(model, &few);
     let free = free_of(model, draft);
     let fitted = |meaning: Meaning| {
-        let data = few.clone().measured_in(read_so(&few.motions, &meaning.reversed));
+        let data = few
+            .clone()
+            .measured_in(read_so(&few.motions, &meaning.reversed));
         let begun = Model {
             angle_zero: meaning.zero,
             ..model.clone()
         };
         let screened = starts(&begun, &free).into_par_iter().map(|start| {
-            fit(&start, &free, &data, None, FitOptions::iterations(SCREENING).rough())
+            fit(
+                &start,
+                &free,
+                &data,
+                None,
+                FitOptions::iterations(SCREENING).rough(),
+            )
         });
         let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let best = best.resume(&data, FitOptions::iterations(ON).rough());
@@ -159,12 +203,17 @@ fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Cand
         true => best.meaning.clone(),
         false => all.first()?.meaning.clone(),
     };
-    all.into_iter().find(|candidate| candidate.meaning == chosen)
+    all.into_iter()
+        .find(|candidate| candidate.meaning == chosen)
 }
 
 fn cost(fit: &Fit) -> f64 {
     let cost = fit.residuals.cost();
-    if cost.is_finite() { cost } else { f64::INFINITY }
+    if cost.is_finite() {
+        cost
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Whether some joint moves beyond its noise.
@@ -193,25 +242,26 @@ fn meanings(model: &Model, draft: &Draft) -> Vec<Meaning> {
     if driven.is_empty() {
         return vec![drafted];
     }
-    let mut zeros = vec![model.angle_zero];
+    let mut all = vec![drafted.clone()];
     if !draft.is_known("angle zero") {
-        let all = [AngleZero::Hanging, AngleZero::Upright, AngleZero::Horizontal];
-        zeros.extend(all.into_iter().filter(|zero| *zero != model.angle_zero));
+        let zeros = [
+            AngleZero::Hanging,
+            AngleZero::Upright,
+            AngleZero::Horizontal,
+        ];
+        let others = zeros.into_iter().filter(|zero| *zero != model.angle_zero);
+        all.extend(others.map(|zero| Meaning {
+            zero,
+            ..drafted.clone()
+        }));
     }
-    let mut signs = vec![drafted.reversed.clone()];
-    for joint in driven {
-        let is_goal = ["position", "speed"].contains(&model.joints[joint].drive.name());
-        if is_goal {
-            continue;
-        }
-        let mut flipped = signs.clone();
-        flipped.iter_mut().for_each(|signs| signs[joint] = true);
-        signs.extend(flipped);
+    let is_goal = |joint: usize| ["position", "speed"].contains(&model.joints[joint].drive.name());
+    for joint in driven.into_iter().filter(|joint| !is_goal(*joint)) {
+        let mut meaning = drafted.clone();
+        meaning.reversed[joint] = true;
+        all.push(meaning);
     }
-    let pairs = signs
-        .iter()
-        .flat_map(|reversed| zeros.iter().map(move |zero| (*zero, reversed.clone())));
-    pairs.map(|(zero, reversed)| Meaning { zero, reversed }).collect()
+    all
 }
 
 /// The motions with the inputs of some joints the other way round.
@@ -219,7 +269,10 @@ fn read_so(motions: &[Motion], reversed: &[bool]) -> Vec<Motion> {
     let mut motions = motions.to_vec();
     for motion in &mut motions {
         for (input, _) in motion.input.iter_mut().zip(reversed).filter(|(_, r)| **r) {
-            input.iter_mut().flatten().for_each(|value| *value = -*value);
+            input
+                .iter_mut()
+                .flatten()
+                .for_each(|value| *value = -*value);
         }
     }
     motions
@@ -228,19 +281,31 @@ fn read_so(motions: &[Motion], reversed: &[bool]) -> Vec<Motion> {
 /// The model fitted, and those of the values that the motions determine, with their intervals. What
 /// they do not determine goes back to where it began, friction to none.
 fn told_by(
+    guessed: &Model,
     begun: &Model,
     data: &FitData,
     mut free: Vec<ParameterPath>,
+    mass_is_known: bool,
 ) -> (Model, Vec<(ParameterPath, Interval)>) {
     let mut model = begun.clone();
+    let mut levers = 0;
     loop {
         let found = fit_staged(&model, &free, data);
+        // Less inertia than the mass has about its joint: its lever is shorter than guessed.
+        if levers < LEVERS
+            && let Some(link) = too_inert(&found)
+        {
+            levers += 1;
+            model = found.model;
+            shorten(&mut model.links[link], mass_is_known);
+            continue;
+        }
         let Some(intervals) = intervals(&found, data).map(|(intervals, _)| intervals) else {
             // The least important stands last.
             let Some(path) = free.pop() else {
                 return (model, Vec::new());
             };
-            forget(&mut model, &path, begun);
+            forget(&mut model, &path, guessed);
             continue;
         };
         let reach = |index: usize| {
@@ -249,7 +314,14 @@ fn told_by(
             0.5 * (interval.high - interval.low) / size.max(1e-12)
         };
         let on_bound = found.on_bound();
-        let untold = |index: &usize| on_bound[*index] || reach(*index).is_nan() || reach(*index) > TOLD;
+        let strange = |index: usize| {
+            let value = free[index].get(&found.model).unwrap_or(0.0);
+            let guess = free[index].get(guessed).unwrap_or(value);
+            !is_plausible(&free[index], value, guess)
+        };
+        let untold = |index: &usize| {
+            on_bound[*index] || reach(*index).is_nan() || reach(*index) > TOLD || strange(*index)
+        };
         let worst = (0..free.len()).filter(untold);
         let Some(worst) = worst.max_by(|a, b| reach(*a).total_cmp(&reach(*b))) else {
             let told = free.into_iter().zip(intervals).collect();
@@ -257,18 +329,54 @@ fn told_by(
         };
         model = found.model;
         let path = free.remove(worst);
-        forget(&mut model, &path, begun);
+        forget(&mut model, &path, guessed);
     }
 }
 
+/// Whether an estimate is one that a bench has: a mass of 60 kg on a servo tells of a motion that the
+/// model does not follow.
+fn is_plausible(path: &ParameterPath, value: f64, guess: f64) -> bool {
+    match path {
+        ParameterPath::Effect { .. } => true,
+        _ => (guess / FAR..=guess * FAR).contains(&value),
+    }
+}
+
+/// A link whose own inertia was fitted to none.
+fn too_inert(found: &Fit) -> Option<usize> {
+    let on_bound = found.on_bound();
+    let mut bounds = found
+        .free
+        .iter()
+        .zip(on_bound)
+        .filter(|(_, on_bound)| *on_bound);
+    bounds.find_map(|(path, _)| match path {
+        ParameterPath::Link {
+            index,
+            field: LinkField::Inertia,
+        } => Some(*index),
+        _ => None,
+    })
+}
+
+/// Halves a link's lever, at the same pull of gravity unless its mass is known, and begins with an
+/// even rod's inertia.
+fn shorten(link: &mut Link, mass_is_known: bool) {
+    link.com_m *= 0.5;
+    if !mass_is_known {
+        link.mass_kg *= 2.0;
+    }
+    link.inertia_kg_m2 = link.mass_kg * link.com_m * link.com_m / 3.0;
+}
+
 /// Takes a value back: friction out, another to its guess.
-fn forget(model: &mut Model, path: &ParameterPath, begun: &Model) {
+fn forget(model: &mut Model, path: &ParameterPath, guessed: &Model) {
     let before = model.effects.len();
     model.effects.retain(|effect| {
         !is_friction(effect) || ParameterPath::of_effect(effect).all(|own| own != *path)
     });
     if model.effects.len() == before
-        && let Some(value) = path.get(begun)
+        && let Some(value) = path.get(guessed)
     {
         let _ = path.set(model, value);
     }

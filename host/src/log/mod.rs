@@ -34,8 +34,8 @@ mod write;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use excerpts::excerpts;
 pub use check::{LogFinding, Proof, Severity, check};
+pub(crate) use excerpts::excerpts;
 pub use folder::{expanded, unfolded};
 pub use format::LogFormat;
 pub use holdout::{Split, split};

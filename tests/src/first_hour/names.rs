@@ -42,10 +42,17 @@ pub(super) fn names(chance: &mut ChaCha8Rng, drive: DriveKind, joints: usize) ->
         DriveKind::Passive => &[],
         DriveKind::Torque => &[("torque_nm", 1.0), ("tau", 1.0), ("effort", 1.0)],
         DriveKind::Duty => &[("duty", 1.0), ("pwm_percent", 100.0), ("duty_pct", 100.0)],
-        DriveKind::Position => &[("goal_deg", DEG), ("goal_position_rad", 1.0), ("target_angle_deg", DEG)],
+        DriveKind::Position => &[
+            ("goal_deg", DEG),
+            ("goal_position_rad", 1.0),
+            ("target_angle_deg", DEG),
+        ],
         DriveKind::Speed => &[("goal_speed_rad_s", 1.0), ("goal_velocity_deg_s", DEG)],
     };
     let time = times[chance.random_range(0..times.len())];
+    // Servos that count are commanded by goals.
+    let counts = matches!(drive, DriveKind::Position | DriveKind::Speed);
+    let angles = &angles[..angles.len() - usize::from(!counts)];
     let angle = angles[chance.random_range(0..angles.len())];
     let input = (!inputs.is_empty()).then(|| inputs[chance.random_range(0..inputs.len())]);
     let numbered = |(name, factor): (&str, f64), joint: usize| match joints {
@@ -55,7 +62,12 @@ pub(super) fn names(chance: &mut ChaCha8Rng, drive: DriveKind, joints: usize) ->
     Names {
         time: (time.0.to_string(), time.1),
         joints: (0..joints)
-            .map(|joint| (numbered(angle, joint), input.map(|input| numbered(input, joint))))
+            .map(|joint| {
+                (
+                    numbered(angle, joint),
+                    input.map(|input| numbered(input, joint)),
+                )
+            })
             .collect(),
         separator: [',', ';', '\t'][chance.random_range(0..3)],
     }
@@ -74,7 +86,10 @@ impl Names {
         for (time_s, joints) in rows {
             let _ = write!(text, "{:.6}", time_s * self.time.1);
             for ((angle, input), (own_angle, own_input)) in joints.iter().zip(&self.joints) {
-                let written = [Some((*angle, own_angle)), own_input.as_ref().map(|own| (*input, own))];
+                let written = [
+                    Some((*angle, own_angle)),
+                    own_input.as_ref().map(|own| (*input, own)),
+                ];
                 for (value, (name, factor)) in written.into_iter().flatten() {
                     let digits = if name.ends_with("ticks") { 0 } else { 5 };
                     let _ = write!(text, "{}{:.digits$}", self.separator, value * factor);

@@ -88,6 +88,13 @@ pub enum Hidden {
     Spring(f64),
 }
 
+impl DrawnLink {
+    /// Torque that holds the link alone level, N m.
+    fn level_nm(&self) -> f64 {
+        9.81 * self.mass_kg * self.com_m
+    }
+}
+
 impl Hidden {
     /// Ids of the library's effects that say it.
     pub fn ids(self) -> &'static [&'static str] {
@@ -110,7 +117,7 @@ impl DrawnRig {
         let drive = KINDS[(seed % 5) as usize];
         let count = if seed % 3 == 2 { 2 } else { 1 };
         let links: Vec<DrawnLink> = (0..count).map(|_| link(&mut chance)).collect();
-        let level_nm = 9.81 * links[0].mass_kg * links[0].com_m;
+        let level_nm = links[0].level_nm();
         let hidden = hidden(&mut chance, drive, level_nm);
         let mut rig = DrawnRig {
             seed,
@@ -128,7 +135,7 @@ impl DrawnRig {
     fn strengthen(&mut self) {
         let mut level_nm = 0.0;
         for link in self.links.iter_mut().rev() {
-            level_nm += 9.81 * link.mass_kg * (link.com_m + link.length_m);
+            level_nm += link.level_nm() + 9.81 * link.mass_kg * link.length_m;
             link.stall_nm *= level_nm;
         }
     }
@@ -144,7 +151,7 @@ fn link(chance: &mut ChaCha8Rng) -> DrawnLink {
         com_m,
         mass_kg,
         inertia_kg_m2: mass_kg * length_m * length_m / 12.0 * chance.random_range(0.8..1.4),
-        viscous_nm_s_rad: level_nm * chance.random_range(0.002..0.02),
+        viscous_nm_s_rad: level_nm * chance.random_range(0.01..0.05),
         coulomb_nm: 0.0,
         stall_nm: chance.random_range(1.5..4.0),
         no_load_rad_s: chance.random_range(6.0..14.0),
@@ -153,13 +160,16 @@ fn link(chance: &mut ChaCha8Rng) -> DrawnLink {
 }
 
 fn hidden(chance: &mut ChaCha8Rng, drive: DriveKind, level_nm: f64) -> Hidden {
-    let part = |chance: &mut ChaCha8Rng, low: f64, high: f64| level_nm * chance.random_range(low..high);
+    let part =
+        |chance: &mut ChaCha8Rng, low: f64, high: f64| level_nm * chance.random_range(low..high);
     let kind = chance.random_range(0..4);
     match (drive, kind) {
         (DriveKind::Passive, 0 | 1) => Hidden::AirDrag(part(chance, 0.004, 0.02)),
         (DriveKind::Passive, _) => Hidden::Coulomb(part(chance, 0.005, 0.03)),
         (DriveKind::Torque, 0) => Hidden::Spring(part(chance, 0.3, 0.8)),
-        (DriveKind::Torque | DriveKind::Duty, 1) => Hidden::DeadZone(chance.random_range(0.08..0.2)),
+        (DriveKind::Torque | DriveKind::Duty, 1) => {
+            Hidden::DeadZone(chance.random_range(0.08..0.2))
+        }
         (DriveKind::Torque | DriveKind::Duty, 2) => Hidden::Cogging(part(chance, 0.1, 0.3)),
         (DriveKind::Torque | DriveKind::Duty, _) => Hidden::Delay(chance.random_range(0.02..0.06)),
         (_, 0) => Hidden::TorqueOffset(part(chance, 0.2, 0.5)),
@@ -174,15 +184,23 @@ pub(super) fn command(rig: &DrawnRig, log: usize, joint: usize, time_s: f64) -> 
     let sines: f64 = [1.0, 2.3, 4.1]
         .iter()
         .enumerate()
-        .map(|(k, factor)| (2.0 * PI * base * factor * time_s + (k + log) as f64).sin() / (1.0 + k as f64))
+        .map(|(k, factor)| {
+            (2.0 * PI * base * factor * time_s + (k + log) as f64).sin() / (1.0 + k as f64)
+        })
         .sum();
-    let step = if (time_s / (2.5 + 0.5 * log as f64)) as i64 % 2 == 0 { 1.0 } else { -1.0 };
+    let step = if (time_s / (2.5 + 0.5 * log as f64)) as i64 % 2 == 0 {
+        1.0
+    } else {
+        -1.0
+    };
     let mixed = 0.35 * sines + 0.25 * step;
     let link = &rig.links[joint];
+    // Arms are swung within their cables' reach, not whirled.
+    let level_nm: f64 = rig.links[joint..].iter().map(DrawnLink::level_nm).sum();
     match rig.drive {
         DriveKind::Passive => 0.0,
-        DriveKind::Torque => 0.35 * link.stall_nm * mixed,
-        DriveKind::Duty => 0.9 * mixed,
+        DriveKind::Torque => 0.9 * level_nm * mixed,
+        DriveKind::Duty => 0.9 * level_nm / link.stall_nm * mixed,
         DriveKind::Position => 1.1 * mixed,
         DriveKind::Speed => 3.0 * mixed,
     }

@@ -75,7 +75,8 @@ fn slope(rig: &DrawnRig, log: usize, time_s: f64, state: &[f64]) -> Vec<f64> {
     if let [_, second] = &rig.links[..] {
         let (l, c) = (first.length_m, second.com_m);
         let between = angle[0] - angle[1];
-        let m11 = first.inertia_kg_m2 + first.mass_kg * first.com_m.powi(2) + second.mass_kg * l * l;
+        let m11 =
+            first.inertia_kg_m2 + first.mass_kg * first.com_m.powi(2) + second.mass_kg * l * l;
         let m22 = second.inertia_kg_m2 + second.mass_kg * c * c;
         let m12 = second.mass_kg * l * c * between.cos();
         let swirl = second.mass_kg * l * c * between.sin();

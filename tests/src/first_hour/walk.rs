@@ -53,21 +53,43 @@ pub fn walk(program: &Path, rig: &DrawnRig, folder: &Path, within: &str) -> Resu
     if checked.code != 0 {
         return Ok(ended(End::Refused(checked.said)));
     }
-    let diagnose = ["diagnose", "arm.toml", "a.csv", "b.csv", "--holdout", "c.csv", "--json"];
+    let diagnose = [
+        "diagnose",
+        "arm.toml",
+        "a.csv",
+        "b.csv",
+        "--holdout",
+        "c.csv",
+        "--json",
+    ];
     let diagnosed = run(&[&diagnose[..], &["--within", within]].concat())?;
     let diagnosis: Value = serde_json::from_str(&diagnosed.data)
         .map_err(|_| format!("diagnose: exit {}: {}", diagnosed.code, diagnosed.said))?;
     let verdict = diagnosis["verdict"].as_str().unwrap_or("").to_string();
     let mut walk = Walk {
         end: end(rig, &diagnosis, &first_model(folder)),
-        error_mrad: [diagnosis["error"]["before_rad"].as_f64().map(|rad| 1e3 * rad), None],
+        error_mrad: [
+            diagnosis["error"]["before_rad"]
+                .as_f64()
+                .map(|rad| 1e3 * rad),
+            None,
+        ],
         verdict,
     };
     let added = addresses(&diagnosis["effects"]);
     if walk.end == End::Found && !added.is_empty() {
         let mut words = vec!["add", "arm.toml"];
         words.extend(added.iter().map(String::as_str));
-        words.extend(["--fit", "a.csv", "b.csv", "--holdout", "c.csv", "-o", "better.toml", "--json"]);
+        words.extend([
+            "--fit",
+            "a.csv",
+            "b.csv",
+            "--holdout",
+            "c.csv",
+            "-o",
+            "better.toml",
+            "--json",
+        ]);
         let added = run(&words)?;
         let fitted: Value = serde_json::from_str(&added.data).unwrap_or_default();
         walk.error_mrad[1] = fitted["error"]["after_rad"].as_f64().map(|rad| 1e3 * rad);
@@ -93,7 +115,9 @@ fn end(rig: &DrawnRig, diagnosis: &Value, first_model: &str) -> End {
     let sets = || std::iter::once(diagnosis).chain(others.clone());
     let verdict = diagnosis["verdict"].as_str().unwrap_or("");
     let said = || diagnosis["summary"].to_string();
-    let in_model = ids.iter().any(|id| first_model.contains(&format!("kind = \"{id}\"")));
+    let in_model = ids
+        .iter()
+        .any(|id| first_model.contains(&format!("kind = \"{id}\"")));
     match verdict {
         "unfit" => End::Refused(said()),
         "named" | "ambiguous" if sets().any(holds) => End::Found,
@@ -131,6 +155,11 @@ fn command(program: &Path, folder: &Path, words: &[&str]) -> Result<Said, String
     Ok(Said {
         code: output.status.code().unwrap_or(-1),
         data: text(&output.stdout),
-        said: format!("{}: {}{}", words.join(" "), text(&output.stdout), text(&output.stderr)),
+        said: format!(
+            "{}: {}{}",
+            words.join(" "),
+            text(&output.stdout),
+            text(&output.stderr)
+        ),
     })
 }

@@ -34,7 +34,11 @@ pub(super) fn anonymise(model: &mut Model) {
             (&mut columns.input, "asked"),
         ];
         for (mean, name) in named {
-            for (servo, column) in mean.iter_mut().flat_map(|mean| mean.columns_mut()).enumerate() {
+            for (servo, column) in mean
+                .iter_mut()
+                .flat_map(|mean| mean.columns_mut())
+                .enumerate()
+            {
                 column.name = format!("{name} {joint} {servo}");
             }
         }

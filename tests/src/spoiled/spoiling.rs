@@ -1,7 +1,8 @@
 //! Ways to spoil a log, or the model file's account of it, and what mends each.
 
 use super::edits::{
-    anonymise, another_drive, clip, count_whole, declare, input_factor, scale_input, scale_position, stall,
+    anonymise, another_drive, clip, count_whole, declare, input_factor, scale_input,
+    scale_position, stall,
 };
 use super::rig::Rig;
 use handstand::Model;

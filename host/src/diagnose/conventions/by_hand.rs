@@ -25,7 +25,10 @@ pub(super) fn held_by_hand(model: &Model, motions: &[Motion]) -> Option<LeaveOut
     let mut runs = Vec::new();
     for (index, motion) in motions.iter().enumerate() {
         let sigma = FitData::new(model, vec![motion.clone()], Horizon::Whole).sigma;
-        let still = Still { motion, sigma: &sigma };
+        let still = Still {
+            motion,
+            sigma: &sigma,
+        };
         let first = still.at_start().filter(|run| is_held(model, &still, run));
         let last = still.at_end().filter(|run| is_caught(model, &still, run));
         runs.extend([first, last].into_iter().flatten().map(|run| (index, run)));

@@ -26,7 +26,9 @@ pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<
     )];
     let travel_rad = travel_rad(motions, joint);
     let plausible = |unit: &Unit| PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / column.unit.si));
-    let units = other_units(model, motions, position).into_iter().filter(plausible);
+    let units = other_units(model, motions, position)
+        .into_iter()
+        .filter(plausible);
     all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
     if joint > 0 && model.joints[joint].slide.is_none() {
         all.push(Remedy::Offset(position, column.offset + PI));

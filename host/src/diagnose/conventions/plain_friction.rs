@@ -91,6 +91,9 @@ fn with_friction(model: &Model, joint: usize) -> Vec<Model> {
 /// The motion with a joint whose drive gives nothing.
 fn without_input(motion: &Motion, joint: usize) -> Motion {
     let mut motion = motion.clone();
-    motion.input[joint].iter_mut().flatten().for_each(|u| *u = 0.0);
+    motion.input[joint]
+        .iter_mut()
+        .flatten()
+        .for_each(|u| *u = 0.0);
     motion
 }

@@ -224,7 +224,9 @@ fn are_counts(model: &Model, motions: &[Motion], quantity: LogColumn) -> bool {
     let Some(mean) = model.log.joints[joint].position.as_ref() else {
         return false;
     };
-    let angles = motions.iter().flat_map(|motion| &motion.position_rad[joint]);
+    let angles = motions
+        .iter()
+        .flat_map(|motion| &motion.position_rad[joint]);
     let mut counts = angles
         .filter(|angle| angle.is_finite())
         .map(|angle| servos * written(*angle, mean));

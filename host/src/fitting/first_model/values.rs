@@ -107,7 +107,10 @@ pub(super) fn free_of(model: &Model, draft: &Draft) -> Vec<ParameterPath> {
 }
 
 fn friction_of<'a>(model: &'a Model, id: &'a str) -> impl Iterator<Item = ParameterPath> + 'a {
-    let own = model.effects.iter().filter(move |effect| effect.effect.info().id == id);
+    let own = model
+        .effects
+        .iter()
+        .filter(move |effect| effect.effect.info().id == id);
     own.flat_map(ParameterPath::of_effect)
 }
 
@@ -135,6 +138,10 @@ pub(super) fn starts(model: &Model, free: &[ParameterPath]) -> Vec<Model> {
         }
         start
     };
-    let pairs = SCALES.iter().flat_map(|scale| FRICTIONS.map(|friction| (*scale, friction)));
-    pairs.map(|(scale, friction)| scaled(scale, friction)).collect()
+    let pairs = SCALES
+        .iter()
+        .flat_map(|scale| FRICTIONS.map(|friction| (*scale, friction)));
+    pairs
+        .map(|(scale, friction)| scaled(scale, friction))
+        .collect()
 }

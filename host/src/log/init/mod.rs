@@ -17,8 +17,8 @@ pub(crate) use name::name_guess;
 
 use crate::error::{Error, Result};
 use crate::log::RawLog;
-use crate::model::{EffectInstance, Unit};
 use crate::model::new_model::{ModelPlan, model_toml};
+use crate::model::{EffectInstance, Unit};
 use columns::log_guess;
 use evidence::Evidence;
 use serde::Serialize;
@@ -185,7 +185,8 @@ impl Draft {
     /// Notes an answer in place of a guess.
     fn said(&mut self, what: &str, answer: &str) {
         self.guesses.retain(|guess| guess.what != what);
-        self.guesses.push(Guess::new(what, answer, estimated::AS_YOU_SAY));
+        self.guesses
+            .push(Guess::new(what, answer, estimated::AS_YOU_SAY));
     }
 
     /// The model file.

@@ -188,7 +188,7 @@ pub fn gravity_of_torques(
 }
 
 /// Share of the widest swing that a half swing must lead away from the rest.
-const AWAY: f64 = 0.1;
+const AWAY: f64 = 0.02;
 
 /// Length of an even rod that swings as often about its rest as these angles do, m; none where
 /// they do not swing.

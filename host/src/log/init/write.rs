@@ -24,10 +24,7 @@ pub(super) fn toml(draft: &Draft) -> Result<String> {
 fn tail(draft: &Draft) -> String {
     let drives: Vec<&str> = draft.plan.links.iter().map(|l| l.drive.as_str()).collect();
     let free = draft.free.clone().unwrap_or_else(|| free(draft));
-    let free: Vec<String> = free
-        .iter()
-        .map(|path| format!("    {path:?},\n"))
-        .collect();
+    let free: Vec<String> = free.iter().map(|path| format!("    {path:?},\n")).collect();
     let mut text = friction(draft);
     text += &format!(
         "\n# Guesses that a fit may change. What the logs do not determine, it says: take that off.\n\
@@ -44,7 +41,11 @@ fn friction(draft: &Draft) -> String {
     for effect in &draft.friction {
         let info = effect.effect.info();
         let joint = effect.joint.map_or(1, |joint| joint + 1);
-        let _ = write!(text, "\n[[effect]]\nkind = \"{}\"\njoint = {joint}\n", info.id);
+        let _ = write!(
+            text,
+            "\n[[effect]]\nkind = \"{}\"\njoint = {joint}\n",
+            info.id
+        );
         for (parameter, value) in info.parameters.iter().zip(&effect.values) {
             let _ = writeln!(text, "{} = {value:?}", parameter.key);
         }

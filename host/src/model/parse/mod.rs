@@ -43,7 +43,14 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     root.only(&["rig", "link", "joint", "expression", "effect", "fit", "log"])?;
 
     let rig = root.required_table("rig")?;
-    rig.only(&["name", "angle_zero", "angles", "gravity_m_s2", "step_s", "guessed"])?;
+    rig.only(&[
+        "name",
+        "angle_zero",
+        "angles",
+        "gravity_m_s2",
+        "step_s",
+        "guessed",
+    ])?;
     let links = links(&root)?;
     let joints = joints(&root, links.len())?;
     let laws = expressions::read(&root)?;
