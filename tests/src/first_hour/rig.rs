@@ -135,7 +135,7 @@ impl DrawnRig {
     fn strengthen(&mut self) {
         let mut level_nm = 0.0;
         for link in self.links.iter_mut().rev() {
-            level_nm += link.level_nm() + 9.81 * link.mass_kg * link.length_m;
+            level_nm += link.level_nm() + 0.3 * 9.81 * link.mass_kg * link.length_m;
             link.stall_nm *= level_nm;
         }
     }
@@ -153,7 +153,7 @@ fn link(chance: &mut ChaCha8Rng) -> DrawnLink {
         inertia_kg_m2: mass_kg * length_m * length_m / 12.0 * chance.random_range(0.8..1.4),
         viscous_nm_s_rad: level_nm * chance.random_range(0.01..0.05),
         coulomb_nm: 0.0,
-        stall_nm: chance.random_range(1.5..4.0),
+        stall_nm: chance.random_range(1.2..2.0),
         no_load_rad_s: chance.random_range(6.0..14.0),
         gain: chance.random_range(4.0..12.0),
     }
@@ -168,7 +168,7 @@ fn hidden(chance: &mut ChaCha8Rng, drive: DriveKind, level_nm: f64) -> Hidden {
         (DriveKind::Passive, _) => Hidden::Coulomb(part(chance, 0.005, 0.03)),
         (DriveKind::Torque, 0) => Hidden::Spring(part(chance, 0.3, 0.8)),
         (DriveKind::Torque | DriveKind::Duty, 1) => {
-            Hidden::DeadZone(chance.random_range(0.08..0.2))
+            Hidden::DeadZone(chance.random_range(0.05..0.12))
         }
         (DriveKind::Torque | DriveKind::Duty, 2) => Hidden::Cogging(part(chance, 0.1, 0.3)),
         (DriveKind::Torque | DriveKind::Duty, _) => Hidden::Delay(chance.random_range(0.02..0.06)),
