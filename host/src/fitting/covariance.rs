@@ -1,6 +1,6 @@
 //! How well the fitted values are known.
 
-use super::cluster::{Cluster, clusters};
+use super::cluster::{Cluster, clusters, pull_of_rests};
 use super::data::FitData;
 use super::fit::Fit;
 use super::student::quantile_975;
@@ -27,9 +27,10 @@ const TAKEN_OUT: f64 = 0.95;
 /// little more than one of them. The standard error is that of a jackknife over clusters of time,
 /// which may be correlated inside as they like (CV3 in MacKinnon, Nielsen & Webb 2023; one linear
 /// step for each cluster left out), or the classical one (residual variance times inverse normal
-/// matrix) where that is larger. A value may rest on few clusters: the interval is Student's with
-/// as many degrees of freedom as clusters really carry it (Bell & McCaffrey 2002). Start states
-/// count as unknowns. `None` where the data do not determine the values at all.
+/// matrix) where that is larger, to which rests add what their one misreading moves the values by:
+/// the fit takes it up, and no residual shows it. A value may rest on few clusters: the interval is
+/// Student's with as many degrees of freedom as clusters really carry it (Bell & McCaffrey 2002).
+/// Start states count as unknowns. `None` where the data do not determine the values at all.
 pub fn intervals(fit: &Fit, data: &FitData) -> Option<(Vec<Interval>, DMatrix<f64>)> {
     let free: Vec<usize> = (0..fit.free.len()).collect();
     intervals_of(&free, fit, data)
@@ -52,10 +53,13 @@ pub fn intervals_of(
     let inverse = inverse(&normal)?;
     let residual = residual_variance(fit);
     let jackknife = jackknife(&clusters, &normal);
+    let pull = { pull_of_rests(fit, data).select_rows(places) }.select_columns(places);
+    let of_rests = &inverse * pull * &inverse;
     let values = fit.values();
     let intervals = (0..count)
         .map(|i| {
-            let variance = jackknife[i].max(residual * inverse[(i, i)]).max(0.0);
+            let classical = residual * inverse[(i, i)];
+            let variance = jackknife[i].max(classical + of_rests[(i, i)]).max(0.0);
             let freedom = freedom(&clusters, &inverse, i);
             let reach = quantile_975(freedom) * variance.sqrt();
             let (low, high) = fit.free[places[i]].bounds(&fit.model);
