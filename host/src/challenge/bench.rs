@@ -100,7 +100,11 @@ fn arm(seed: u64, kinds: &[&'static str]) -> Bench {
     arm_bench(&rig, secrets, &recordings)
 }
 
-fn arm_bench(rig: &BenchArm, secrets: Vec<HiddenEffect>, recordings: &[ArmRecording; 3]) -> Bench {
+pub(super) fn arm_bench(
+    rig: &BenchArm,
+    secrets: Vec<HiddenEffect>,
+    recordings: &[ArmRecording; 3],
+) -> Bench {
     let logs = arm_logs(recordings).into_iter().enumerate();
     Bench {
         model_toml: text::model_toml(rig, rig.believed, &[]),

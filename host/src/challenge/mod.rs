@@ -14,6 +14,7 @@ mod motion;
 mod moving_base;
 mod physics;
 mod played;
+mod readings;
 mod reference;
 mod regulator;
 mod robot;
@@ -33,6 +34,7 @@ pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench, true_model_toml, w
 pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use played::{ArmInputs, play};
+pub use readings::{READINGS, Readings, read_arm, read_pendulum};
 pub use score::{ChallengeScore, ScoredValue, score};
 pub use seal::{ChallengeAnswer, seal, unseal};
 

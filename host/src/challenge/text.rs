@@ -155,7 +155,7 @@ fn effect(text: &mut String, kind: &str, parameters: &[(&'static str, f64)]) {
     );
 }
 
-fn effect_at(text: &mut String, effect: &EffectLine) {
+pub fn effect_at(text: &mut String, effect: &EffectLine) {
     let kind = effect.kind;
     let _ = write!(text, "\n[[effect]]\nkind = \"{kind}\"\n");
     if !of_whole_rig(kind) {

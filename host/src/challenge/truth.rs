@@ -10,6 +10,7 @@ use super::gyro::Gyro;
 use super::history::History;
 use super::moving_base::BaseState;
 use super::physics::{DriveCommand, Mount, Physics};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Longest integration step, s.
@@ -211,9 +212,7 @@ impl ArmCommands {
 
     /// Encoder values before noise and rounding, rad, at every command, when these commands drive
     /// the settled arm, and readings of a gyro.
-    #[cfg(test)]
     pub fn replay(&self, physics: &Physics, mount: Mount) -> (Vec<f64>, Vec<f64>) {
-        use rand::SeedableRng;
         let mut rng = ChaCha8Rng::seed_from_u64(0);
         let mut arm = Arm::settled(physics, mount);
         let mut sensed = Vec::with_capacity(self.time_s.len());
