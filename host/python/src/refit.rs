@@ -7,7 +7,7 @@ use crate::value::plain;
 use crate::work::{self, WorkReport};
 use handstand::fitting::{
     Addition, FittedValue, Refitted, Undetermined, add_effects, candidates_named, free_parameters,
-    not_reduced, refit, with_refitted,
+    refit, with_refitted,
 };
 use handstand::report::{refitted_json, refitted_text};
 use pyo3::prelude::*;
@@ -57,9 +57,10 @@ pub fn add(
             refitted: *refitted,
             before: "for the model refitted without",
         }),
-        Addition::NotReduced(refitted) => Err(HandstandError::new_err(format!(
-            "{}\nremedy: `diagnose` says which effect the logs ask for",
-            not_reduced(&refitted, &names)
+        Addition::Unhelpful(why) => Err(HandstandError::new_err(format!(
+            "{}\nremedy: {}",
+            why.why(&names),
+            why.remedy()
         ))),
         Addition::Undetermined(why) => Err(undetermined(&why)),
     }

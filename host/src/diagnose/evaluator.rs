@@ -4,16 +4,17 @@
 use super::budget::{EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, HOPELESS, LOOK, planned_steps};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
-use super::horizon::{is_followed, search_horizons};
 use super::hypothesis::{Evaluation, Hypothesis};
-use super::initial_guess::{PredictionChange, Sizes, changes};
 use super::measured_value::is_ruled_out;
 use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::StepCounter;
 use super::residual_structure::residual_structure;
 use super::values::as_given;
-use crate::fitting::{Candidate, Fit, FitData, FitOptions, Horizon, Progress, coarsened};
+use crate::fitting::{
+    Candidate, Fit, FitData, FitOptions, Horizon, PredictionChange, Progress, Sizes, changes,
+    coarsened, is_followed, search_horizons,
+};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;

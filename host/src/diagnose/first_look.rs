@@ -6,8 +6,7 @@
 use super::budget::{LOOK, SECOND_LOOKS};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::{InitialGuess, PredictionChange, ProjectedResidual};
-use crate::fitting::FitOptions;
+use crate::fitting::{FitOptions, InitialGuess, PredictionChange, ProjectedResidual};
 use rayon::prelude::*;
 
 /// A guess that promises less than this share of what the candidate's best one does is not tried.

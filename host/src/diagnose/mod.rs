@@ -15,7 +15,6 @@ mod findings;
 mod first_look;
 mod horizon;
 mod hypothesis;
-mod initial_guess;
 mod inseparable;
 mod log_outcome;
 mod logs;

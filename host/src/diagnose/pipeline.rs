@@ -15,7 +15,7 @@ use super::options::DiagnoseOptions;
 use super::progress::STRUCTURE;
 use super::stability::folds;
 use crate::effects::{CONTROLS, PLACEBO};
-use crate::fitting::{Candidate, Progress, settle};
+use crate::fitting::{Candidate, Progress, stated_from};
 use crate::log::Motion;
 use crate::model::Model;
 
@@ -128,11 +128,16 @@ impl Evaluator<'_> {
         Some(own)
     }
 
-    /// Fits the best set, where it is the explanation, as exactly as its values are stated.
+    /// Fits the best set, where it is the explanation, as exactly as its values are stated, from
+    /// the values of the given model too.
     fn settle(&self, tried: &mut Tried) {
         if let Explanation::Effects(best) = tried.explanation(self) {
             let mut best = best.clone();
-            let settled = settle(best.fit().clone(), &self.training);
+            let found = best.fit().clone();
+            let added = found.model.effects[self.start.effects.len()..].iter();
+            let mut given = self.start.clone();
+            given.effects.extend(added.cloned());
+            let settled = stated_from(found, &given, &self.training);
             best.judge(settled, &self.training, self.held_out.as_ref());
             tried.best = Some(best);
         }

@@ -2,9 +2,10 @@
 
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::{PredictionChange, ProjectedResidual, Sizes, changes};
 use super::values::kinds_of_values;
-use crate::fitting::{Candidate, Fit, FitOptions, fit, residuals};
+use crate::fitting::{
+    Candidate, Fit, FitOptions, PredictionChange, ProjectedResidual, Sizes, changes, fit, residuals,
+};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 

@@ -8,11 +8,11 @@
 
 use super::block_errors::{BlockErrors, PairedSums, bootstrap, paired};
 use super::findings::ResidualStructure;
-use super::initial_guess::change;
 use super::terms::{Term, terms};
 use crate::effects::ProbeVariable;
-use crate::fitting::fit_start_states;
-use crate::fitting::{Fit, FitData, FitOptions, Projector, Residuals, fit as refit};
+use crate::fitting::{
+    Fit, FitData, FitOptions, Projector, Residuals, change, fit as refit, fit_start_states,
+};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 

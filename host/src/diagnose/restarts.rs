@@ -4,9 +4,8 @@
 use super::budget::{FINISH, RESTART_LOOK, RESTARTS, START_ITERATIONS};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use super::initial_guess::InitialGuess;
 use super::multistart::{Valleys, scattered};
-use crate::fitting::{Candidate, Fit, FitOptions, fit, fit_through_stages};
+use crate::fitting::{Candidate, Fit, FitOptions, InitialGuess, fit, fit_through_stages};
 use crate::model::{Model, ParameterPath};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

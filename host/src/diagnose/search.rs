@@ -11,10 +11,9 @@ use super::budget::{
 };
 use super::evaluator::{Evaluator, Reach, every_change};
 use super::hypothesis::Hypothesis;
-use super::initial_guess::InitialGuess;
 use super::progress::{ALONE, LARGER};
 use super::verdict::FAR_OFF;
-use crate::fitting::{Candidate, FitOptions};
+use crate::fitting::{Candidate, FitOptions, InitialGuess};
 use rayon::prelude::*;
 
 mod partners;

@@ -1,18 +1,15 @@
 //! Effects added to a model's text, their values fitted along with the free ones.
 
 use super::candidate::{Candidate, CandidateError};
+use super::error_reduction::ErrorReduction;
 use super::horizon::Horizon;
 use super::progress::Progress;
-use super::refit::{Refitted, Undetermined, refit_with};
+use super::refit::{MOST_LEFT, NotAdded, Refitted, Undetermined, refit_with};
 use crate::error::Result;
 use crate::log::{Motion, Split};
 use crate::model::{Model, edit};
 use crate::output::number::mrad;
 use std::path::Path;
-
-/// Share of the error that effects leave at most: what lowers it by less than a thousandth, a value
-/// at which the effect vanishes for one, does not show.
-const MOST_LEFT: f64 = 0.999;
 
 /// What became of effects that were to be added.
 #[derive(Debug, Clone)]
@@ -24,10 +21,64 @@ pub enum Addition {
         /// The fit.
         refitted: Box<Refitted>,
     },
-    /// The error is not reduced, or by less than shows; the fit says by how much it misses.
-    NotReduced(Box<Refitted>),
+    /// They bring nothing that shows.
+    Unhelpful(Unhelpful),
     /// The motions do not determine the values.
     Undetermined(Undetermined),
+}
+
+/// Effects that bring nothing that shows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Unhelpful {
+    /// The fit found no better values than those at which the effects vanish: the error of the
+    /// motions fitted.
+    NotFound(ErrorReduction),
+    /// The error on the motions held out is not reduced, though that on the motions fitted is.
+    NotReduced {
+        /// The error on the motions held out.
+        error: ErrorReduction,
+        /// That on the motions fitted, before and after, rad.
+        fitted_rad: [f64; 2],
+    },
+}
+
+impl Unhelpful {
+    /// The error that decided.
+    pub fn error(&self) -> &ErrorReduction {
+        match self {
+            Unhelpful::NotFound(error) | Unhelpful::NotReduced { error, .. } => error,
+        }
+    }
+
+    /// Why the effects of these names are not added, as a clause.
+    pub fn why(&self, names: &[String]) -> String {
+        let (names, error) = (names.join(", "), self.error());
+        let [before, after] = [error.before_rad, error.after_rad].map(mrad);
+        match self {
+            Unhelpful::NotFound(_) => format!(
+                "with {names} the fit did not find a better value: {before} mrad on fitted motions \
+                 without, {after} mrad with"
+            ),
+            Unhelpful::NotReduced { fitted_rad, .. } => {
+                let [fitted_before, fitted_after] = fitted_rad.map(mrad);
+                format!(
+                    "with {names} the error on held-out motions goes from {before} to {after} mrad, \
+                     though that on fitted motions goes from {fitted_before} to {fitted_after} mrad"
+                )
+            }
+        }
+    }
+
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Unhelpful::NotFound(_) => {
+                "take shorter windows, which tell more of a motion that the model loses, or other \
+                 motions"
+            }
+            Unhelpful::NotReduced { .. } => "the diagnosis says which effect the logs ask for",
+        }
+    }
 }
 
 /// The effects of these names (`delay`, `coulomb@2`), each once.
@@ -62,10 +113,17 @@ pub fn add_effects(
     let model = Model::parse(text, path)?;
     let refitted = match refit_with(&model, candidates, split, horizon, progress) {
         Ok(refitted) => Box::new(refitted),
-        Err(why) => return Ok(Addition::Undetermined(why)),
+        Err(NotAdded::Undetermined(why)) => return Ok(Addition::Undetermined(why)),
+        Err(NotAdded::NotBetter(error)) => {
+            return Ok(Addition::Unhelpful(Unhelpful::NotFound(error)));
+        }
     };
-    if refitted.error.after_rad > MOST_LEFT * refitted.error.before_rad {
-        return Ok(Addition::NotReduced(refitted));
+    let (error, fitted_rad) = (refitted.error, refitted.fitted_rad);
+    if error.after_rad > MOST_LEFT * error.before_rad {
+        return Ok(Addition::Unhelpful(match error.held_out {
+            true => Unhelpful::NotReduced { error, fitted_rad },
+            false => Unhelpful::NotFound(error),
+        }));
     }
     let mut text = with_values(text, path, &model, &refitted)?;
     let logs = files(&split.training);
@@ -102,17 +160,6 @@ fn with_values(text: &str, path: &Path, model: &Model, refitted: &Refitted) -> R
         Some(step_s) => edit::set_step(&text, path, step_s),
         None => Ok(text),
     }
-}
-
-/// Why effects whose error is not reduced are not added.
-pub fn not_reduced(refitted: &Refitted, names: &[String]) -> String {
-    let error = &refitted.error;
-    let motions = if error.held_out { "held-out" } else { "fitted" };
-    let [before, after] = [error.before_rad, error.after_rad].map(mrad);
-    format!(
-        "with {} the error on {motions} motions goes from {before} to {after} mrad",
-        names.join(", ")
-    )
 }
 
 /// Name and SHA-256 of every file the motions came from, each once.

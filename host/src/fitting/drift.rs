@@ -5,7 +5,7 @@ use super::data::FitData;
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
 use super::refit::{Undetermined, blind, told_apart};
-use super::staged::fit_staged;
+use super::ways::{best_fit, stated};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -78,8 +78,9 @@ pub fn drift(
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let fitted = sessions.par_iter().map(|session| {
         let data = FitData::new(model, session.motions.clone(), horizon);
-        let found = fit_staged(model, free, &data);
+        let found = best_fit(model, free, &data);
         told_apart(&found)?;
+        let found = stated(found, &data);
         match fitted_values(&found, &data) {
             (values, Some(_)) => Ok(values),
             _ => Err(Undetermined {

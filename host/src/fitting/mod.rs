@@ -7,6 +7,7 @@
 //! system of P unknowns (`normal`).
 
 mod add;
+mod added;
 mod assumed;
 mod broyden;
 mod candidate;
@@ -23,6 +24,7 @@ mod free;
 mod growth;
 mod horizon;
 mod information;
+mod initial_guess;
 mod jacobian;
 mod least_horizon;
 mod levenberg_marquardt;
@@ -40,6 +42,7 @@ mod projector;
 mod rate_tests;
 mod refit;
 mod residual;
+mod search_windows;
 #[cfg(test)]
 mod sensor_tests;
 mod solve;
@@ -48,9 +51,10 @@ mod stairs;
 mod step;
 mod step_size;
 mod student;
+mod ways;
 mod windows;
 
-pub use add::{Addition, add_effects, candidates_named, not_reduced, with_refitted};
+pub use add::{Addition, Unhelpful, add_effects, candidates_named, with_refitted};
 pub use candidate::{Candidate, CandidateError, effect_named};
 pub use covariance::{Interval, intervals, intervals_of};
 pub use data::FitData;
@@ -62,18 +66,26 @@ pub use fitted_value::{FittedValue, fitted_values};
 pub use free::{FreeError, free_parameters};
 pub use horizon::{Horizon, Window};
 pub use information::Information;
+pub(crate) use initial_guess::{
+    InitialGuess, PredictionChange, ProjectedResidual, Sizes, change, changes, changes_like,
+};
 pub use least_horizon::HorizonTooShort;
 pub use node::Node;
 pub use noise::{Noise, estimated_resolution, noise};
-pub(crate) use polish::{polish, settle};
+pub(crate) use polish::polish;
 pub use profile::profile_intervals;
 pub use progress::Progress;
 pub use projector::Projector;
-pub use refit::{Refitted, Undetermined, refit, refit_with};
+pub use refit::{NotAdded, Refitted, Undetermined, refit, refit_with};
 pub use residual::{Residuals, predicted, residuals};
+pub(crate) use search_windows::{is_followed, search_horizons};
 pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_nodes};
-pub use staged::{fit_staged, fit_through_stages};
+pub use staged::fit_through_stages;
 pub(crate) use stairs::{down_the_stairs, told_by_others};
 pub(crate) use step_size::coarsened;
 pub(crate) use student::quantile_975;
+pub use ways::best_fit;
+#[cfg(test)]
+pub(crate) use ways::stated;
+pub(crate) use ways::stated_from;
 pub use windows::{MotionWindow, in_windows};

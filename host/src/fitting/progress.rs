@@ -13,37 +13,38 @@ pub struct Progress {
     pub what: Cow<'static, str>,
 }
 
-/// The steps of a refit: one for each start value, one for the fit from the best of them, one for
-/// its values.
+/// The steps of a refit: the fit without what is added, or the only one; those of a fit with it; and
+/// one for its values.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RefitSteps {
-    starts: usize,
+    with: usize,
 }
 
 impl RefitSteps {
-    pub fn with_starts(starts: usize) -> Self {
-        RefitSteps { starts }
+    /// With so many steps of the fit with what is added.
+    pub fn new(with: usize) -> Self {
+        RefitSteps { with }
     }
 
-    /// So many start values were tried.
-    pub fn tried(self, starts: usize) -> Progress {
-        self.at(starts, "start values")
-    }
-
-    /// All is fitted from the best of them.
+    /// The fit without what is added, or the only one.
     pub fn fitting(self) -> Progress {
-        self.at(self.starts, "fit")
+        self.at(0, "fit")
+    }
+
+    /// So many steps with what is added are done.
+    pub fn tried(self, steps: usize) -> Progress {
+        self.at(1 + steps.min(self.with), "fit from several starts")
     }
 
     /// The values are fitted as exactly as they are stated.
     pub fn settling(self) -> Progress {
-        self.at(self.starts + 1, "exact values")
+        self.at(1 + self.with, "exact values")
     }
 
     fn at(self, done: usize, what: &'static str) -> Progress {
         Progress {
             done,
-            total: self.starts + 2,
+            total: self.with + 2,
             what: what.into(),
         }
     }

@@ -4,34 +4,25 @@
 #[cfg(test)]
 mod tests;
 
+use super::added::AddedEffects;
 use super::data::FitData;
 use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
 use super::mixture::untold_mixture;
-use super::polish::{polish, settle};
+use super::polish::polish;
 use super::progress::{Progress, RefitSteps};
 use super::residual::residuals;
-use super::solve::{fit, fit_start_states};
-use super::staged::fit_staged;
+use super::solve::fit_start_states;
 use super::stairs::told_by_others;
+use super::ways::{best_fit, stated};
 use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
 use crate::model::edit::FitRecord;
 use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
-
-/// Over short windows the squared error has few false valleys: where start values are told apart,
-/// s.
-const SCREENING_S: f64 = 1.0;
-/// Iterations that tell a promising start from a hopeless one.
-const SCREENING: FitOptions = FitOptions {
-    rough: true,
-    glance: false,
-    iterations: 8,
-    tolerance: 1e-3,
-};
+use std::cell::Cell;
 
 /// A refitted model.
 #[derive(Debug, Clone)]
@@ -44,6 +35,8 @@ pub struct Refitted {
     pub values: Vec<FittedValue>,
     /// Error before and after.
     pub error: ErrorReduction,
+    /// The same of the motions that were fitted, rad.
+    pub fitted_rad: [f64; 2],
     /// The integration step, s, where the logs ask for a shorter one than the model's own.
     pub shorter_step_s: Option<f64>,
     /// How long the model ran without correction at most.
@@ -133,15 +126,20 @@ pub fn refit(
     horizon: Option<Horizon>,
     progress: &dyn Fn(Progress),
 ) -> Result<Refitted, Undetermined> {
-    let steps = RefitSteps::with_starts(0);
+    let steps = RefitSteps::new(0);
     progress(steps.fitting());
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
-    let found = fit_staged(model, free, &data);
-    let found = polish(found, &data, FitOptions::default());
+    let found = best_fit(model, free, &data);
     told_apart(&found)?;
     progress(steps.settling());
-    finish(model, found, &data, split, horizon)
+    let refit = Refit {
+        before: fit_start_states(model, &data),
+        data,
+        split,
+        horizon,
+    };
+    refit.finish(found)
 }
 
 /// Refuses values of which the data tell only a mixture.
@@ -156,95 +154,144 @@ pub(super) fn told_apart(found: &Fit) -> Result<(), Undetermined> {
     }
 }
 
-/// Adds the candidates, one after the other, and fits their values along with the model's free
-/// ones, from every start value of each effect. The error before is that of the model refitted
-/// without them. `progress` hears what is being done.
+/// Why effects are not added.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NotAdded {
+    /// The motions do not determine the values.
+    Undetermined(Undetermined),
+    /// The fit found no values with which the motions it was fitted to leave less than without the
+    /// effects, by what shows. The figures are of those motions.
+    NotBetter(ErrorReduction),
+}
+
+/// Share of the error that effects leave at most: what lowers it by less than a thousandth, a value
+/// at which the effect vanishes for one, does not show.
+pub(super) const MOST_LEFT: f64 = 0.999;
+
+/// Adds the candidates, and fits their values along with the model's free ones. The error before is
+/// that of the model refitted without them; on the motions fitted none after it is larger.
+/// `progress` hears what is being done.
 ///
 /// # Errors
-/// The motions do not determine the values.
+/// As [`NotAdded`] says.
 pub fn refit_with(
     model: &Model,
     candidates: &[Candidate],
     split: &Split,
     horizon: Option<Horizon>,
     progress: &dyn Fn(Progress),
-) -> Result<Refitted, Undetermined> {
+) -> Result<Refitted, NotAdded> {
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
-    let base = fit_staged(model, &model.free, &data);
-    let short = data.recut(horizon.shorter(Horizon::Seconds(SCREENING_S)));
-    let starts = candidates.iter().map(|candidate| candidate.starts().len());
-    let steps = RefitSteps::with_starts(starts.sum());
-    let (mut done, mut with, mut free) = (0, base.model.clone(), model.free.clone());
-    for candidate in candidates {
-        free.extend(candidate.paths().filter(|path| !model.free.contains(path)));
-        let screened = candidate.starts().into_iter().map(|start| {
-            progress(steps.tried(done));
-            done += 1;
-            let mut started = with.clone();
-            started.effects.push(candidate.instance(&start));
-            fit(&started, &free, &short, None, SCREENING)
-        });
-        let cost = |fit: &Fit| fit.residuals.cost();
-        let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)));
-        with = best.map_or(with.clone(), |best| best.model);
-    }
+    let mut free = model.free.clone();
+    let own = candidates
+        .iter()
+        .flat_map(|c| c.paths().collect::<Vec<_>>());
+    free.extend(own.filter(|path| !model.free.contains(path)));
+    let added = AddedEffects {
+        model,
+        candidates,
+        free: &free,
+        data: &data,
+    };
+    let steps = RefitSteps::new(added.steps());
     progress(steps.fitting());
+    let options = FitOptions::default();
+    let base = polish(best_fit(model, &model.free, &data), &data, options);
+    progress(steps.tried(0));
+    let done = Cell::new(0);
+    let mut found = added.fitted(&base, horizon, &|| {
+        done.set(done.get() + 1);
+        progress(steps.tried(done.get()));
+    });
     // Whoever goes on with this model refits the new values too.
-    with.free.clone_from(&free);
-    let found = fit_staged(&with, &free, &data);
-    let found = polish(found, &data, FitOptions::default());
+    found.model.free.clone_from(&free);
     progress(steps.settling());
-    finish(&base.model, found, &data, split, horizon)
+    let is_better = found.residuals.cost() < MOST_LEFT.powi(2) * base.residuals.cost();
+    let refit = Refit {
+        before: base,
+        data,
+        split,
+        horizon,
+    };
+    match is_better {
+        true => refit.finish(found).map_err(NotAdded::Undetermined),
+        false => Err(NotAdded::NotBetter(refit.error_on_fitted(&found))),
+    }
 }
 
-fn finish(
-    before: &Model,
-    found: Fit,
-    data: &FitData,
-    split: &Split,
+/// What a fit is of, and what it is compared with.
+struct Refit<'a> {
+    /// The fit that leaves the error before.
+    before: Fit,
+    data: FitData,
+    split: &'a Split,
     horizon: Horizon,
-) -> Result<Refitted, Undetermined> {
-    let judged = match split.held_out.as_slice() {
-        [] => data.clone(),
-        held_out => FitData::new(before, held_out.to_vec(), horizon).weighted_like(data),
-    };
-    let mut found = settle(found, data);
-    if !split.held_out.is_empty() {
-        found = told_by_others(found, data, &judged);
-    }
-    let (values, Some(_)) = fitted_values(&found, data) else {
-        let blind = blind(&found, data);
-        return Err(Undetermined {
-            blind,
-            mixed: Vec::new(),
+}
+
+impl Refit<'_> {
+    /// States the values of a fit, with their intervals, and the errors before and after: on the
+    /// motions held out where there are any.
+    fn finish(self, found: Fit) -> Result<Refitted, Undetermined> {
+        let data = &self.data;
+        let model = &self.before.model;
+        let held_out = (!self.split.held_out.is_empty()).then(|| {
+            let held_out = self.split.held_out.clone();
+            FitData::new(model, held_out, self.horizon).weighted_like(data)
         });
-    };
-    let mut windows = data.motion_windows(horizon);
-    if !split.held_out.is_empty() {
-        windows.extend(judged.motion_windows(horizon));
+        let mut found = stated(found, data);
+        if let Some(judged) = &held_out {
+            found = told_by_others(found, data, judged);
+        }
+        let (values, Some(_)) = fitted_values(&found, data) else {
+            return Err(Undetermined {
+                blind: blind(&found, data),
+                mixed: Vec::new(),
+            });
+        };
+        let fitted = self.error_on_fitted(&found);
+        let rms_rad = |model: &Model, data: &FitData| fit_start_states(model, data).rms(data);
+        let mut windows = data.motion_windows(self.horizon);
+        windows.extend(
+            held_out
+                .iter()
+                .flat_map(|held_out| held_out.motion_windows(self.horizon)),
+        );
+        Ok(Refitted {
+            values,
+            fitted_rad: [fitted.before_rad, fitted.after_rad],
+            error: match &held_out {
+                None => fitted,
+                Some(judged) => ErrorReduction {
+                    before_rad: rms_rad(model, judged),
+                    after_rad: rms_rad(&found.model, judged),
+                    held_out: true,
+                    ..fitted
+                },
+            },
+            free: found.free,
+            windows,
+            unobserved: model.log.notes(),
+            converged: found.converged,
+            shorter_step_s: (found.model.step_s < model.step_s).then_some(found.model.step_s),
+            model: found.model,
+            horizon: self.horizon,
+        })
     }
-    let rms_rad = |model: &Model| fit_start_states(model, &judged).rms(&judged);
-    Ok(Refitted {
-        values,
-        error: ErrorReduction {
-            quantity: MeasuredSignal::pooled(&judged.signals),
-            before_rad: rms_rad(before),
+
+    /// Errors on the motions that were fitted: of both in the same windows.
+    fn error_on_fitted(&self, found: &Fit) -> ErrorReduction {
+        ErrorReduction {
+            quantity: MeasuredSignal::pooled(&self.data.signals),
+            before_rad: self.before.rms(&self.data),
             refitted_rad: None,
-            after_rad: rms_rad(&found.model),
-            floor_rad: judged.floor(),
-            floor_interval_rad: judged.floor_interval(),
-            held_out: !split.held_out.is_empty(),
+            after_rad: found.rms(&self.data),
+            floor_rad: self.data.floor(),
+            floor_interval_rad: self.data.floor_interval(),
+            held_out: false,
             reduction: None,
-        },
-        free: found.free,
-        windows,
-        unobserved: before.log.notes(),
-        converged: found.converged,
-        shorter_step_s: (found.model.step_s < before.step_s).then_some(found.model.step_s),
-        model: found.model,
-        horizon,
-    })
+        }
+    }
 }
 
 /// The free parameters whose change leaves every prediction as it was.

@@ -9,10 +9,13 @@ use super::fit::{Fit, FitOptions};
 use super::horizon::{Horizon, Window};
 use super::node::Node;
 use super::solve::{fit, guessed_nodes};
+use super::ways::{End, Route};
 use crate::model::{Model, ParameterPath};
 
-/// Seconds of one window, stage by stage.
-const STAGES_S: [f64; 4] = [0.25, 0.5, 1.0, 2.0];
+/// Seconds of one window, stage by stage, over which most valleys are true.
+const SHORT_S: &[f64] = &[0.25, 0.5, 1.0];
+/// Those between them and whole motions.
+pub(super) const LONGER_S: &[f64] = &[2.0, 4.0, 8.0];
 
 /// A stage need not end exactly where its cost is least.
 const STAGE: FitOptions = FitOptions {
@@ -22,38 +25,79 @@ const STAGE: FitOptions = FitOptions {
     glance: false,
 };
 
-/// Root-mean-square weighted residual that leaves nothing to look for.
-const AT_FLOOR: f64 = 1.15;
-
-/// Where the stages of short windows end.
-struct Near {
+/// Stages of windows that grow, and where the last one ended.
+pub(super) struct Stages<'a> {
     model: Model,
-    /// Start states of the windows that were to be fitted.
-    nodes: Vec<Node>,
+    free: &'a [ParameterPath],
+    data: &'a FitData,
+    /// The windows of the last stage and their start states.
+    before: Option<(Vec<Window>, Vec<Node>)>,
     simulations: usize,
 }
 
-fn stages(model: &Model, free: &[ParameterPath], data: &FitData) -> Near {
-    let longest = data.windows.iter().map(|w| w.samples.len()).max();
-    let mut near = Near {
-        model: model.clone(),
-        nodes: guessed_nodes(data),
-        simulations: 0,
-    };
-    let mut before: Option<(Vec<Window>, Vec<Node>)> = None;
-    for seconds in STAGES_S {
-        let stage = data.recut(Horizon::Seconds(seconds));
-        if stage.windows.iter().map(|w| w.samples.len()).max() >= longest {
-            break;
+impl<'a> Stages<'a> {
+    pub fn from(model: &Model, free: &'a [ParameterPath], data: &'a FitData) -> Self {
+        Stages {
+            model: model.clone(),
+            free,
+            data,
+            before: None,
+            simulations: 0,
         }
-        let nodes = carried(before.as_ref(), &stage);
-        let found = fit(&near.model, free, &stage, Some(&nodes), STAGE);
-        near.model = found.model;
-        near.simulations += found.simulations;
-        before = Some((stage.windows, found.nodes));
     }
-    near.nodes = carried(before.as_ref(), data);
-    near
+
+    /// Goes on where `found` stands, a fit over other windows of the same motions.
+    pub fn after(
+        found: &Fit,
+        windows: &FitData,
+        free: &'a [ParameterPath],
+        data: &'a FitData,
+    ) -> Self {
+        Stages {
+            before: Some((windows.windows.clone(), found.nodes.clone())),
+            ..Stages::from(&found.model, free, data)
+        }
+    }
+
+    /// Fits over windows of these lengths, one after the other, that are shorter than those of the
+    /// data; false where none is.
+    pub fn through(&mut self, lengths_s: &[f64]) -> bool {
+        let longest = |data: &FitData| data.windows.iter().map(|w| w.samples.len()).max();
+        let mut any = false;
+        for &seconds in lengths_s {
+            let stage = self.data.recut(Horizon::Seconds(seconds));
+            if longest(&stage) >= longest(self.data) {
+                break;
+            }
+            let nodes = carried(self.before.as_ref(), &stage);
+            let found = fit(&self.model, self.free, &stage, Some(&nodes), STAGE);
+            self.model = found.model;
+            self.simulations += found.simulations;
+            self.before = Some((stage.windows, found.nodes));
+            any = true;
+        }
+        any
+    }
+
+    /// The fit over the windows of the data from here.
+    pub fn end(&mut self, options: FitOptions) -> Fit {
+        let nodes = match &self.before {
+            Some(_) => carried(self.before.as_ref(), self.data),
+            None => guessed_nodes(self.data),
+        };
+        let mut found = fit(&self.model, self.free, self.data, Some(&nodes), options);
+        found.simulations += std::mem::take(&mut self.simulations);
+        found
+    }
+
+    /// The fits that end stages of short windows, and longer ones.
+    pub fn ends(mut self) -> impl Iterator<Item = End> + 'a {
+        let routes = [(Route::Short, SHORT_S), (Route::Longer, LONGER_S)];
+        routes.into_iter().map_while(move |(route, lengths_s)| {
+            let any = self.through(lengths_s);
+            any.then(|| (route, self.end(FitOptions::default())))
+        })
+    }
 }
 
 /// Start states of the windows of `data`: those of the windows before that start with the same
@@ -71,28 +115,6 @@ fn carried(before: Option<&(Vec<Window>, Vec<Node>)>, data: &FitData) -> Vec<Nod
         .collect()
 }
 
-/// Fits the free parameters from values that may be several times off; windows as in `data`.
-///
-/// A plain fit that leaves nothing but noise is taken as it is. Otherwise the better one counts of
-/// the plain fit and one that starts where the stages of short windows end.
-pub fn fit_staged(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit {
-    let plain = fit(model, free, data, None, FitOptions::default());
-    let mean = plain.residuals.cost() / plain.residuals.count().max(1) as f64;
-    if mean.sqrt() < AT_FLOOR {
-        return plain;
-    }
-    let mut staged = fit_through_stages(model, free, data, FitOptions::default());
-    staged.simulations += plain.simulations;
-    if staged.residuals.cost() < plain.residuals.cost() {
-        staged
-    } else {
-        Fit {
-            simulations: staged.simulations,
-            ..plain
-        }
-    }
-}
-
 /// Fits from where the stages of short windows end.
 pub fn fit_through_stages(
     model: &Model,
@@ -100,14 +122,14 @@ pub fn fit_through_stages(
     data: &FitData,
     options: FitOptions,
 ) -> Fit {
-    let near = stages(model, free, data);
-    let mut found = fit(&near.model, free, data, Some(&near.nodes), options);
-    found.simulations += near.simulations;
-    found
+    let mut stages = Stages::from(model, free, data);
+    stages.through(SHORT_S);
+    stages.end(options)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::ways::best_fit;
     use super::*;
     use crate::log::{LogRequest, read};
     use std::fmt::Write as _;
@@ -187,7 +209,7 @@ input = { column = "u", unit = "N m" }
             for (path, factor) in free.iter().zip(factors) {
                 assert!(path.set(&mut start, factor * path.get(&model).unwrap()));
             }
-            let found = fit_staged(&start, &free, &data);
+            let found = best_fit(&start, &free, &data);
             for (path, value) in free.iter().zip(found.values()) {
                 let truth = path.get(&model).unwrap();
                 assert!(

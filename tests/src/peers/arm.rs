@@ -2,7 +2,7 @@
 
 use super::median_seconds;
 use handstand::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use handstand::fitting::{FitData, FitOptions, Horizon, fit, fit_staged, fit_start_states};
+use handstand::fitting::{FitData, FitOptions, Horizon, best_fit, fit, fit_start_states};
 use handstand::log::{LogRequest, Motion, read};
 use handstand::model::ParameterPath;
 use handstand::{Error, Model, Result};
@@ -167,8 +167,8 @@ impl Arm {
             let mut left = 0.0;
             times.push(median_seconds(1, || {
                 let data = FitData::new(&start, self.motions.clone(), Horizon::Whole);
-                let found = fit_staged(&start, &self.free, &data);
-                left = fit_staged(&found.model, &[], &judged).rms(&judged);
+                let found = best_fit(&start, &self.free, &data);
+                left = best_fit(&found.model, &[], &judged).rms(&judged);
                 values = found.values();
             }));
             let off = values

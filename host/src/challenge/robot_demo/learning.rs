@@ -74,7 +74,7 @@ impl Learned {
                 match addition {
                     Addition::Added { text, .. } => text,
                     Addition::Undetermined(_) => as_diagnosed(text, file, &found.diagnosis)?,
-                    Addition::NotReduced(_) => text.to_string(),
+                    Addition::Unhelpful(_) => text.to_string(),
                 }
             }
         };

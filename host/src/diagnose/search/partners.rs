@@ -3,10 +3,7 @@
 use super::super::budget::{LOOK, PARTNERS};
 use super::super::evaluator::Evaluator;
 use super::super::hypothesis::Hypothesis;
-use super::super::initial_guess::{
-    InitialGuess, PredictionChange, ProjectedResidual, changes_like,
-};
-use crate::fitting::Candidate;
+use crate::fitting::{Candidate, InitialGuess, PredictionChange, ProjectedResidual, changes_like};
 use rayon::prelude::*;
 
 impl Evaluator<'_> {

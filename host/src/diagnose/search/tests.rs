@@ -2,7 +2,7 @@ use super::*;
 use crate::challenge::{Bench, Motions, bench};
 use crate::diagnose::pipeline::Searched;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use crate::fitting::{Fit, Horizon, fit_start_states, settle};
+use crate::fitting::{Fit, Horizon, fit_start_states, stated};
 use crate::log::{LogRequest, Motion, read};
 use crate::model::Model;
 use std::path::Path;
@@ -348,7 +348,7 @@ fn evaluated_and_stated(seed: u64, kind: &'static str, values: &[f64]) -> [(f64,
     let evaluator = evaluator(seed, &[kind]);
     let mut set = fitted(&evaluator, &[kind], [values]);
     evaluator.evaluate(&mut set);
-    let stated = settle(set.fit().clone(), &evaluator.training);
+    let stated = stated(set.fit().clone(), &evaluator.training);
     [set.fit(), &stated].map(|fit| (fit.model.step_s, fit.residuals.cost()))
 }
 

@@ -1,8 +1,9 @@
 //! Known values, simulated, found again.
 
 use super::*;
+use crate::challenge::{Bench, Readings, read_arm, read_pendulum};
 use crate::effects;
-use crate::log::{Motion, MotionSource};
+use crate::log::{LogRequest, Motion, MotionSource, read};
 use crate::sim::{Memory, Plant, Start, predict};
 use std::path::Path;
 
@@ -165,4 +166,85 @@ fn steps_that_are_too_long_for_what_is_found_are_shortened() {
     let fine = added(&in_steps(0.0005));
     assert_eq!(fine.shorter_step_s, None);
     assert_eq!(fine.model.step_s, 0.0005);
+}
+
+/// What a bench's owner believes, the true model, and the motions: those held out as well where
+/// they are wanted.
+fn believed_and_true(bench: &Bench) -> (Model, Model, Split) {
+    let dir = tempfile::tempdir().unwrap();
+    let parsed = |text: &str| Model::parse(text, &dir.path().join("m.toml")).unwrap();
+    let (believed, truth) = (parsed(&bench.model_toml), parsed(&bench.true_model_toml));
+    let training = bench
+        .logs
+        .iter()
+        .filter(|log| !log.held_out)
+        .flat_map(|log| {
+            let file = dir.path().join(&log.name);
+            std::fs::write(&file, &log.csv).unwrap();
+            read(&[LogRequest::whole(file)], &believed.log).unwrap()
+        });
+    let split = Split {
+        training: training.collect(),
+        held_out: Vec::new(),
+    };
+    (believed, truth, split)
+}
+
+/// A pendulum that rests half a swing sooner, under more of one friction and less of another: what
+/// is left of its logs has valleys that look like the true one.
+#[test]
+fn added_drag_leaves_no_more_than_the_truth_whatever_valleys_friction_makes() {
+    for seed in [1, 2, 3, 4] {
+        let (believed, truth, split) =
+            believed_and_true(&read_pendulum(seed, Readings::NoisySteps));
+        let drag = [Candidate::named("air_drag@1", &believed).unwrap()];
+        let added = refit_with(&believed, &drag, &split, None, &|_| {}).unwrap();
+        let data = FitData::new(&believed, split.training.clone(), Horizon::Whole);
+        let true_rad = fit_start_states(&truth, &data).rms(&data);
+        let [_, after_rad] = added.fitted_rad;
+        assert!(
+            after_rad <= true_rad * 1.0001,
+            "{seed}: {after_rad} {true_rad}"
+        );
+        // And from the true friction, as well as from the believed.
+        let again = refit(&added.model, &added.free, &split, None, &|_| {}).unwrap();
+        assert!(again.error.after_rad <= after_rad * 1.0001);
+    }
+}
+
+/// Play in the gear, of which the model knows nothing: it loses whole motions.
+#[test]
+fn an_effect_that_is_added_leaves_no_more_than_the_model_without_it() {
+    for seed in [1, 2] {
+        let (believed, _, mut split) =
+            believed_and_true(&read_arm(seed, "gear_backlash", Readings::NoisySteps));
+        split.training.truncate(1);
+        let stribeck = [Candidate::named("stribeck@1", &believed).unwrap()];
+        match refit_with(&believed, &stribeck, &split, None, &|_| {}) {
+            Ok(added) => assert!(added.fitted_rad[1] < added.fitted_rad[0], "{added:?}"),
+            Err(NotAdded::NotBetter(error)) => {
+                assert!(error.after_rad <= error.before_rad, "{error:?}")
+            }
+            Err(why) => panic!("{why:?}"),
+        }
+    }
+}
+
+#[test]
+fn an_effect_that_is_not_there_is_refused_for_want_of_better_values() {
+    let mut truth = pendulum();
+    truth.effects.push(candidate("coulomb").instance(&[0.004]));
+    let mut model = truth.clone();
+    model.free = vec!["coulomb@1.torque_nm".parse().unwrap()];
+    let split = Split {
+        held_out: Vec::new(),
+        ..swings(&truth)
+    };
+    let added = refit_with(&model, &[candidate("stribeck")], &split, None, &|_| {});
+    let Err(NotAdded::NotBetter(error)) = added else {
+        panic!("{added:?}");
+    };
+    assert!(error.after_rad <= error.before_rad);
+    let why = crate::fitting::Unhelpful::NotFound(error).why(&["stribeck@1".to_string()]);
+    assert!(why.contains("did not find a better value"), "{why}");
 }

@@ -9,8 +9,7 @@ use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, diagnose_logs};
 use crate::error::{Error, Result};
 use crate::fitting::{
-    Addition, Undetermined, add_effects, candidates_named, free_parameters, not_reduced, refit,
-    with_refitted,
+    Addition, Undetermined, add_effects, candidates_named, free_parameters, refit, with_refitted,
 };
 use crate::model::Model;
 
@@ -68,12 +67,7 @@ impl LabSession {
         )?;
         let toml = match added {
             Addition::Added { text, .. } => text,
-            Addition::NotReduced(refitted) => {
-                return Err(Error::usage(
-                    not_reduced(&refitted, names),
-                    "the diagnosis says which effect the logs ask for",
-                ));
-            }
+            Addition::Unhelpful(why) => return Err(Error::usage(why.why(names), why.remedy())),
             Addition::Undetermined(why) => return Err(undetermined(&why)),
         };
         self.keep_step(

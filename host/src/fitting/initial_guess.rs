@@ -1,13 +1,18 @@
 //! Where to start the fit of a candidate: the values that promise most, found by one simulation
 //! each.
 
-use crate::fitting::{Candidate, Fit, FitData, Node, Projector, residuals};
+use super::candidate::Candidate;
+use super::data::FitData;
+use super::fit::Fit;
+use super::node::Node;
+use super::projector::Projector;
+use super::residual::residuals;
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 
 /// Initial values for a candidate, and how much of the squared residual they could remove.
 #[derive(Debug, Clone)]
-pub(super) struct InitialGuess {
+pub(crate) struct InitialGuess {
     pub candidate: Candidate,
     pub values: Vec<f64>,
     pub gain: f64,
@@ -15,7 +20,7 @@ pub(super) struct InitialGuess {
 
 /// What a start of a candidate changes in the prediction.
 #[derive(Debug, Clone)]
-pub(super) struct PredictionChange {
+pub(crate) struct PredictionChange {
     pub candidate: Candidate,
     pub start: Vec<f64>,
     windows: Vec<Vec<f64>>,
@@ -23,7 +28,7 @@ pub(super) struct PredictionChange {
 
 /// In which sizes starts are tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Sizes {
+pub(crate) enum Sizes {
     /// As they are.
     Whole,
     /// Small.
@@ -44,7 +49,7 @@ impl Sizes {
 }
 
 /// What each start of a candidate changes in the prediction of a fitted model: one simulation each.
-pub(super) fn changes(
+pub(crate) fn changes(
     from: &Fit,
     candidate: Candidate,
     sizes: Sizes,
@@ -73,7 +78,7 @@ fn starts(candidate: Candidate) -> Vec<Vec<f64>> {
 const FEW_SHAPES: usize = 4;
 
 /// The changes of all starts of this shape, each as it is and small.
-pub(super) fn changes_like(
+pub(crate) fn changes_like(
     from: &Fit,
     like: &PredictionChange,
     data: &FitData,
@@ -117,7 +122,7 @@ fn small(candidate: Candidate, start: &[f64]) -> Vec<f64> {
 
 /// A fitted model's residual without what its own values can imitate: what candidates are to
 /// explain.
-pub(super) struct ProjectedResidual<'a> {
+pub(crate) struct ProjectedResidual<'a> {
     projector: Projector<'a>,
     residual: Vec<Vec<f64>>,
 }
@@ -241,7 +246,7 @@ fn signed_shape(candidate: Candidate, values: &[f64]) -> Vec<f64> {
 
 /// How the prediction changes, weighted, when an effect is added: residual before minus residual
 /// after.
-pub(super) fn change(
+pub(crate) fn change(
     model: &Model,
     candidate: Candidate,
     values: &[f64],
