@@ -11,4 +11,5 @@ pub mod kills;
 pub mod measured;
 pub mod peers;
 pub mod reading;
+pub mod refit;
 pub mod spoiled;

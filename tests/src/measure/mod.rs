@@ -13,6 +13,7 @@ mod page;
 mod peers;
 mod program;
 mod real;
+mod refit;
 mod robot_demo;
 mod scatter;
 mod spoiled;
@@ -44,6 +45,8 @@ enum Chore {
     FirstHour(first_hour::Args),
     /// Diagnose public logs of real rigs
     Real(real::Args),
+    /// Measure whether `add` and `fit` leave no more than diagnoses, and hold the truth
+    Refit(refit::Args),
     /// Balance virtual robots before and after they were measured
     RobotDemo(robot_demo::Args),
     /// Spoil logs in every way, and measure what the check finds
@@ -72,6 +75,7 @@ impl Chores {
             Chore::Next(args) => next::run(args),
             Chore::FirstHour(args) => first_hour::run(args),
             Chore::Real(args) => real::run(args),
+            Chore::Refit(args) => refit::run(args),
             Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),

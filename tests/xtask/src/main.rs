@@ -57,6 +57,8 @@ enum Chore {
     FirstHour(Words),
     /// Diagnose public logs of real rigs
     Real(Words),
+    /// Measure whether `add` and `fit` leave no more than diagnoses, and hold the truth
+    Refit(Words),
     /// Balance virtual robots before and after they were measured
     RobotDemo(Words),
     /// Spoil logs in every way, and measure what the check finds
@@ -95,6 +97,7 @@ fn main() -> ExitCode {
         Chore::Next(words) => ("next", words),
         Chore::FirstHour(words) => ("first-hour", words),
         Chore::Real(words) => ("real", words),
+        Chore::Refit(words) => ("refit", words),
         Chore::RobotDemo(words) => ("robot-demo", words),
         Chore::Spoiled(words) => ("spoiled", words),
         Chore::Virtual(words) => ("virtual", words),
