@@ -8,7 +8,7 @@ use crate::work;
 use handstand::compare::compare_all;
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, FittedEffect, LogDiagnosis, diagnose_logs};
-use handstand::fitting::{Horizon, Progress, effect_named, free_parameters};
+use handstand::fitting::{Horizon, Progress, effect_ids, free_parameters};
 use handstand::log::{Split, split};
 use handstand::report::{Report, ReportProvenance, diagnosis_json, diagnosis_text, html};
 use pyo3::prelude::*;
@@ -45,13 +45,10 @@ pub fn diagnose(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Diagnosis> {
     let model = model.get().clone();
-    for effect in &without {
-        effect_named(effect).map_err(exception)?;
-    }
     let defaults = DiagnoseOptions::default();
     let options = DiagnoseOptions {
         seed: seed.unwrap_or(defaults.seed),
-        without,
+        without: effect_ids(&without).map_err(exception)?,
         known: match known.as_slice() {
             [] => Vec::new(),
             known => free_parameters(&model.inner, known).map_err(exception)?,

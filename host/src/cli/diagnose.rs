@@ -28,7 +28,7 @@ use each::EachArgs;
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare_all};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, LogDiagnosis, Verdict, diagnose_logs};
-use handstand::fitting::{Horizon, effect_named};
+use handstand::fitting::{Horizon, effect_ids};
 use handstand::log::{LogRequest, LogSet, Motion, read};
 use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
 use handstand::synth::StateFeedbackPlan;
@@ -112,13 +112,10 @@ pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
 
 /// What the options ask for.
 fn options(model: &Model, args: &DiagnoseArgs) -> Result<DiagnoseOptions> {
-    for effect in &args.without {
-        effect_named(effect)?;
-    }
     let defaults = DiagnoseOptions::default();
     Ok(DiagnoseOptions {
         seed: args.seed.unwrap_or(defaults.seed),
-        without: args.without.clone(),
+        without: effect_ids(&args.without)?,
         known: input::known(model, &args.known)?,
         horizon: args.judging.run.horizon,
         trust_log: args.trust_log,

@@ -28,7 +28,7 @@ use handstand::experiment::{
     Criterion, ExperimentLimits, ExperimentProposal, FollowUp, ProposeOptions, propose,
     propose_values,
 };
-use handstand::fitting::{Horizon, effect_named, free_parameters};
+use handstand::fitting::{Horizon, effect_ids, free_parameters};
 use handstand::log::{LogRequest, LogSet, to_csv};
 use handstand::model::Model;
 use handstand::report::{next_steps, proposal_text};
@@ -101,9 +101,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
         output::vacant(file, args.force)?;
     }
-    for effect in &args.without {
-        effect_named(effect)?;
-    }
+    effect_ids(&args.without)?;
     let mut model = Model::load(&args.model)?;
     model.hinges_only("proposed motions are for servos that turn")?;
     let known = input::known(&model, &args.known)?;
@@ -182,7 +180,7 @@ impl NextArgs {
 
     fn diagnosed(&self, model: &Model, logs: &LogSet, talk: &Talk) -> Result<Diagnosis> {
         let options = DiagnoseOptions {
-            without: self.without.clone(),
+            without: effect_ids(&self.without)?,
             known: input::known(model, &self.known)?,
             horizon: self.judging.run.horizon,
             trust_log: self.trust_log,

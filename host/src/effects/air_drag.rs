@@ -9,6 +9,16 @@ pub struct AirDrag;
 static INFO: EffectInfo = EffectInfo {
     id: "air_drag",
     title: "air drag",
+    aliases: &[
+        "drag",
+        "aerodynamic drag",
+        "air resistance",
+        "quadratic drag",
+        "quadratic damping",
+        "fluid drag",
+        "windage",
+        "damping",
+    ],
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -31,6 +31,14 @@ pub(super) const ROTOR_ON_SLIDE: Parameter = Parameter {
 static INFO: EffectInfo = EffectInfo {
     id: "armature",
     title: "armature inertia",
+    aliases: &[
+        "rotor inertia",
+        "motor inertia",
+        "reflected inertia",
+        "gear inertia",
+        "inertia",
+        "added inertia",
+    ],
     site: Site::Body,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

@@ -10,6 +10,15 @@ pub struct Backlash;
 static INFO: EffectInfo = EffectInfo {
     id: "backlash",
     title: "backlash before the encoder",
+    aliases: &[
+        "play",
+        "encoder backlash",
+        "lash",
+        "slop",
+        "free play",
+        "hysteresis",
+        "lost motion",
+    ],
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

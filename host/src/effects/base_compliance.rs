@@ -11,6 +11,17 @@ pub struct BaseCompliance;
 static INFO: EffectInfo = EffectInfo {
     id: "base_compliance",
     title: "compliance of the base or bar",
+    aliases: &[
+        "base flexibility",
+        "base elasticity",
+        "mount flexibility",
+        "moving base",
+        "wobble",
+        "compliance",
+        "flexibility",
+        "elasticity",
+        "spring",
+    ],
     site: Site::Body,
     scope: Scope::WholeRig,
     needs: Needs::Nothing,

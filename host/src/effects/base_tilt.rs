@@ -10,6 +10,14 @@ pub struct BaseTilt;
 static INFO: EffectInfo = EffectInfo {
     id: "base_tilt",
     title: "base tilt",
+    aliases: &[
+        "tilt",
+        "gravity direction",
+        "level",
+        "levelling",
+        "mounting angle",
+        "inclination",
+    ],
     site: Site::Body,
     scope: Scope::WholeRig,
     needs: Needs::Nothing,

@@ -9,6 +9,13 @@ pub struct BearingFriction;
 static INFO: EffectInfo = EffectInfo {
     id: "bearing_friction",
     title: "load friction of a plain bearing",
+    aliases: &[
+        "bearing drag",
+        "journal bearing",
+        "plain bearing",
+        "friction circle",
+        "friction",
+    ],
     site: Site::Friction,
     scope: Scope::PassiveJoint,
     needs: Needs::BearingLoad,

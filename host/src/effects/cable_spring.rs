@@ -9,6 +9,16 @@ pub struct CableSpring;
 static INFO: EffectInfo = EffectInfo {
     id: "cable_spring",
     title: "cable spring",
+    aliases: &[
+        "cable",
+        "cable drag",
+        "wire stiffness",
+        "harness",
+        "parallel spring",
+        "joint spring",
+        "spring",
+        "stiffness",
+    ],
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -11,6 +11,14 @@ pub struct Cogging;
 static INFO: EffectInfo = EffectInfo {
     id: "cogging",
     title: "cogging and gear ripple",
+    aliases: &[
+        "cogging torque",
+        "detent torque",
+        "torque ripple",
+        "gear ripple",
+        "ripple",
+        "reluctance torque",
+    ],
     site: Site::Joint,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

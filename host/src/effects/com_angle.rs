@@ -9,6 +9,15 @@ pub struct ComAngle;
 static INFO: EffectInfo = EffectInfo {
     id: "com_angle",
     title: "angle of the centre of mass",
+    aliases: &[
+        "centre of mass offset",
+        "center of mass offset",
+        "COM offset",
+        "off-axis mass",
+        "eccentricity",
+        "imbalance",
+        "unbalance",
+    ],
     site: Site::Body,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -9,6 +9,14 @@ pub struct Coulomb;
 static INFO: EffectInfo = EffectInfo {
     id: "coulomb",
     title: "Coulomb friction",
+    aliases: &[
+        "dry friction",
+        "kinetic friction",
+        "sliding friction",
+        "static friction",
+        "frictionloss",
+        "friction",
+    ],
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

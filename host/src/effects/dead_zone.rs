@@ -10,6 +10,7 @@ pub struct DeadZone;
 static INFO: EffectInfo = EffectInfo {
     id: "dead_zone",
     title: "dead zone of the drive",
+    aliases: &["deadband", "minimum duty", "minimum PWM", "insensitivity"],
     site: Site::Command,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

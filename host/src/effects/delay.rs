@@ -9,6 +9,15 @@ pub struct Delay;
 static INFO: EffectInfo = EffectInfo {
     id: "delay",
     title: "transport delay",
+    aliases: &[
+        "latency",
+        "lag",
+        "dead time",
+        "time delay",
+        "transport lag",
+        "input delay",
+        "communication delay",
+    ],
     site: Site::Timing,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

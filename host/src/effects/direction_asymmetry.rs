@@ -9,6 +9,12 @@ pub struct DirectionAsymmetry;
 static INFO: EffectInfo = EffectInfo {
     id: "direction_asymmetry",
     title: "direction asymmetry of friction",
+    aliases: &[
+        "asymmetric friction",
+        "friction asymmetry",
+        "direction-dependent friction",
+        "friction",
+    ],
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

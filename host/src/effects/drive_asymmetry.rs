@@ -9,6 +9,15 @@ pub struct DriveAsymmetry;
 static INFO: EffectInfo = EffectInfo {
     id: "drive_asymmetry",
     title: "drive/backdrive asymmetry of the gear",
+    aliases: &[
+        "back-drivability",
+        "backdriving",
+        "gear efficiency",
+        "efficiency",
+        "worm gear",
+        "self-locking",
+        "friction",
+    ],
     site: Site::Friction,
     scope: Scope::DrivenJoint,
     needs: Needs::GearLoad,

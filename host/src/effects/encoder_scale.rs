@@ -9,6 +9,14 @@ pub struct EncoderScale;
 static INFO: EffectInfo = EffectInfo {
     id: "encoder_scale",
     title: "encoder scale",
+    aliases: &[
+        "encoder gain",
+        "sensor gain",
+        "scale factor",
+        "potentiometer gain",
+        "gain",
+        "gain error",
+    ],
     site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -9,6 +9,15 @@ pub struct EncoderZero;
 static INFO: EffectInfo = EffectInfo {
     id: "encoder_zero",
     title: "encoder zero",
+    aliases: &[
+        "encoder offset",
+        "zero offset",
+        "calibration offset",
+        "homing error",
+        "sensor offset",
+        "offset",
+        "bias",
+    ],
     site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

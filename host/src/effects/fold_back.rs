@@ -14,6 +14,12 @@ pub struct FoldBack;
 static INFO: EffectInfo = EffectInfo {
     id: "fold_back",
     title: "protective fold-back of the torque",
+    aliases: &[
+        "overload protection",
+        "current limit",
+        "derating",
+        "protection",
+    ],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

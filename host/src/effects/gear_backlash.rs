@@ -10,6 +10,16 @@ pub struct GearBacklash;
 static INFO: EffectInfo = EffectInfo {
     id: "gear_backlash",
     title: "backlash of the gear",
+    aliases: &[
+        "play",
+        "gear play",
+        "lash",
+        "slop",
+        "free play",
+        "hysteresis",
+        "lost motion",
+        "dead space",
+    ],
     site: Site::Gear,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

@@ -11,6 +11,7 @@ pub struct GripSlip;
 static INFO: EffectInfo = EffectInfo {
     id: "grip_slip",
     title: "slip of the grip or of the encoder's shaft",
+    aliases: &["slip", "slippage", "coupling slip", "shaft slip", "grip"],
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

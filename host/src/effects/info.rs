@@ -112,6 +112,8 @@ pub struct EffectInfo {
     pub id: &'static str,
     /// Name for people.
     pub title: &'static str,
+    /// What else people call it; several effects may share a word, as `friction`.
+    pub aliases: &'static [&'static str],
     /// The law in one line.
     pub law: &'static str,
     /// Which joints it can act on.

@@ -9,6 +9,14 @@ pub struct LoadFriction;
 static INFO: EffectInfo = EffectInfo {
     id: "load_friction",
     title: "load-dependent friction of the gear",
+    aliases: &[
+        "gear friction",
+        "gear efficiency",
+        "efficiency",
+        "load-dependent friction",
+        "mesh friction",
+        "friction",
+    ],
     site: Site::Friction,
     scope: Scope::DrivenJoint,
     needs: Needs::GearLoad,

@@ -15,6 +15,13 @@ const LEAST_SHARE: f64 = 0.01;
 static INFO: EffectInfo = EffectInfo {
     id: "mass",
     title: "mass or payload",
+    aliases: &[
+        "payload",
+        "added mass",
+        "load mass",
+        "inertial parameters",
+        "weight",
+    ],
     site: Site::Body,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -15,6 +15,7 @@ pub const PLACEBO: &str = "placebo";
 static INFO: EffectInfo = EffectInfo {
     id: PLACEBO,
     title: "placebo (shuffled speed)",
+    aliases: &[],
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -10,6 +10,13 @@ pub struct PositionFriction;
 static INFO: EffectInfo = EffectInfo {
     id: "position_friction",
     title: "friction that changes with the angle",
+    aliases: &[
+        "position-dependent friction",
+        "angle-dependent friction",
+        "tight spot",
+        "binding",
+        "friction",
+    ],
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

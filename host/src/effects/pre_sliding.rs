@@ -14,6 +14,17 @@ pub struct PreSliding;
 static INFO: EffectInfo = EffectInfo {
     id: "pre_sliding",
     title: "pre-sliding friction",
+    aliases: &[
+        "Dahl",
+        "Dahl model",
+        "LuGre",
+        "LuGre model",
+        "bristle",
+        "bristle model",
+        "microslip",
+        "hysteresis",
+        "friction",
+    ],
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -128,6 +128,7 @@ const fn info(id: &'static str, site: Site) -> EffectInfo {
     EffectInfo {
         id,
         title: "free-form term",
+        aliases: &[],
         site,
         scope: Scope::AnyJoint,
         needs: Needs::Nothing,

@@ -9,6 +9,13 @@ pub struct RateBias;
 static INFO: EffectInfo = EffectInfo {
     id: "rate_bias",
     title: "bias of the rate sensor",
+    aliases: &[
+        "gyro bias",
+        "gyro offset",
+        "gyroscope bias",
+        "gyro drift",
+        "bias",
+    ],
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

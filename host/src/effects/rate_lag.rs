@@ -10,6 +10,15 @@ pub struct RateLag;
 static INFO: EffectInfo = EffectInfo {
     id: "rate_lag",
     title: "lag of the rate sensor",
+    aliases: &[
+        "gyro lag",
+        "gyro filter",
+        "gyro bandwidth",
+        "tachometer filter",
+        "lag",
+        "low-pass",
+        "low-pass filter",
+    ],
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::RateSensor,

@@ -9,6 +9,14 @@ pub struct RateScale;
 static INFO: EffectInfo = EffectInfo {
     id: "rate_scale",
     title: "scale of the rate sensor",
+    aliases: &[
+        "gyro scale",
+        "gyro gain",
+        "gyroscope scale factor",
+        "tachometer gain",
+        "gain",
+        "gain error",
+    ],
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::RateSensor,

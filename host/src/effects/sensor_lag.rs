@@ -10,6 +10,15 @@ pub struct SensorLag;
 static INFO: EffectInfo = EffectInfo {
     id: "sensor_lag",
     title: "lag of the sensor",
+    aliases: &[
+        "lag",
+        "filter lag",
+        "low-pass",
+        "low-pass filter",
+        "sensor filter",
+        "encoder filter",
+        "phase lag",
+    ],
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

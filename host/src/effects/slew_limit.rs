@@ -10,6 +10,13 @@ pub struct SlewLimit;
 static INFO: EffectInfo = EffectInfo {
     id: "slew_limit",
     title: "slew limit of the drive",
+    aliases: &[
+        "slew rate",
+        "rate limit",
+        "rate limiter",
+        "ramp limit",
+        "acceleration limit",
+    ],
     site: Site::Command,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

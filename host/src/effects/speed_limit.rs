@@ -9,6 +9,16 @@ pub struct SpeedLimit;
 static INFO: EffectInfo = EffectInfo {
     id: "speed_limit",
     title: "speed limit by back-EMF",
+    aliases: &[
+        "back-EMF",
+        "counter-EMF",
+        "BEMF",
+        "back EMF constant",
+        "torque-speed curve",
+        "speed-torque curve",
+        "electrical damping",
+        "no-load speed",
+    ],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

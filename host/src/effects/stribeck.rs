@@ -12,6 +12,16 @@ pub struct Stribeck;
 static INFO: EffectInfo = EffectInfo {
     id: "stribeck",
     title: "stiction and Stribeck friction",
+    aliases: &[
+        "stiction",
+        "static friction",
+        "breakaway",
+        "breakaway torque",
+        "break-away friction",
+        "stick-slip",
+        "Stribeck effect",
+        "friction",
+    ],
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -9,6 +9,13 @@ pub struct SupplySag;
 static INFO: EffectInfo = EffectInfo {
     id: "supply_sag",
     title: "supply sag",
+    aliases: &[
+        "voltage drop",
+        "voltage sag",
+        "battery sag",
+        "internal resistance",
+        "brownout",
+    ],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

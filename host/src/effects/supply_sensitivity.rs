@@ -9,6 +9,7 @@ pub struct SupplySensitivity;
 static INFO: EffectInfo = EffectInfo {
     id: "supply_sensitivity",
     title: "torque depends on the supply",
+    aliases: &["supply voltage", "battery voltage", "voltage dependence"],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Supply,

@@ -12,6 +12,14 @@ pub struct ThermalDrift;
 static INFO: EffectInfo = EffectInfo {
     id: "thermal_drift",
     title: "thermal drift of the motor",
+    aliases: &[
+        "heating",
+        "motor heating",
+        "temperature",
+        "winding temperature",
+        "warm-up",
+        "thermal derating",
+    ],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

@@ -13,6 +13,18 @@ const MOST_S: f64 = 0.1;
 static INFO: EffectInfo = EffectInfo {
     id: "time_offset",
     title: "time offset of the reading",
+    aliases: &[
+        "latency",
+        "time shift",
+        "clock offset",
+        "timestamp offset",
+        "synchronisation",
+        "synchronization",
+        "sensor delay",
+        "measurement delay",
+        "skew",
+        "offset",
+    ],
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -9,6 +9,14 @@ pub struct TorqueOffset;
 static INFO: EffectInfo = EffectInfo {
     id: "torque_offset",
     title: "constant torque offset",
+    aliases: &[
+        "bias",
+        "torque bias",
+        "offset",
+        "constant torque",
+        "constant disturbance",
+        "load bias",
+    ],
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -9,6 +9,13 @@ pub struct TorqueSaturation;
 static INFO: EffectInfo = EffectInfo {
     id: "torque_saturation",
     title: "torque saturation",
+    aliases: &[
+        "saturation",
+        "torque limit",
+        "clipping",
+        "current limit",
+        "force limit",
+    ],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

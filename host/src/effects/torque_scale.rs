@@ -11,6 +11,14 @@ pub struct TorqueScale;
 static INFO: EffectInfo = EffectInfo {
     id: "torque_scale",
     title: "torque scale",
+    aliases: &[
+        "torque constant",
+        "motor constant",
+        "kt",
+        "gain",
+        "gain error",
+        "motor gain",
+    ],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,

@@ -9,6 +9,16 @@ pub struct Viscous;
 static INFO: EffectInfo = EffectInfo {
     id: "viscous",
     title: "viscous friction",
+    aliases: &[
+        "damping",
+        "damper",
+        "viscous damping",
+        "viscous drag",
+        "linear damping",
+        "linear drag",
+        "dashpot",
+        "friction",
+    ],
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,

@@ -1,8 +1,7 @@
 //! An effect of the library at a place of the model (a joint, all driven joints, the whole rig): by
 //! its name, its addresses, its start values.
 
-use crate::effects::expression::defined;
-use crate::effects::{EFFECTS, Effect, Parameter, SMOOTH_DIFFERENCE, Scope, at_all};
+use crate::effects::{Effect, Found, Parameter, SMOOTH_DIFFERENCE, Scope, at_all, listed, look_up};
 use crate::error::Error;
 use crate::model::{EffectInstance, Model, ParameterPath, effect_on};
 use std::fmt;
@@ -135,8 +134,16 @@ pub enum CandidateError {
     UnknownEffect {
         /// The name.
         name: String,
-        /// The name most like it.
-        nearest: Option<&'static str>,
+        /// Effects that speak of it, or that are spelled alike.
+        similar: Vec<&'static dyn Effect>,
+    },
+    /// Several effects are called so.
+    #[error("`{name}` may be any of {} effects", called.len())]
+    SeveralEffects {
+        /// The name.
+        name: String,
+        /// Those that are called so.
+        called: Vec<&'static dyn Effect>,
     },
     /// The effect acts on the whole rig, and a joint was named.
     #[error("`{id}` acts on the whole rig, not on one joint")]
@@ -196,12 +203,16 @@ impl From<CandidateError> for Error {
     fn from(error: CandidateError) -> Error {
         use CandidateError as E;
         let remedy = match &error {
-            E::UnknownEffect { nearest: None, .. } => "`handstand effects` lists all".to_string(),
-            E::UnknownEffect {
-                nearest: Some(near),
-                ..
-            } => {
-                format!("did you mean `{near}`? `handstand effects` lists all")
+            E::UnknownEffect { similar, .. } => match similar.as_slice() {
+                [] => "`handstand effects` lists all".to_string(),
+                [one] => {
+                    let id = one.info().id;
+                    format!("did you mean `{id}`? `handstand effects` lists all")
+                }
+                several => format!("did you mean one of these?\n{}", listed(several).join("\n")),
+            },
+            E::SeveralEffects { called, .. } => {
+                format!("name one of them\n{}", listed(called).join("\n"))
             }
             E::WholeRig { id } => format!("write `{id}`"),
             E::JointNotNamed { id, count } => {
@@ -220,23 +231,35 @@ impl From<CandidateError> for Error {
     }
 }
 
-/// The effect of this name.
+/// The effect of this name: its id, or what people call it and no other effect.
 ///
 /// # Errors
-/// [`CandidateError::UnknownEffect`] with the nearest name.
+/// [`CandidateError::UnknownEffect`] with those that are like it, [`CandidateError::SeveralEffects`]
+/// with those that are called so.
 pub fn effect_named(name: &str) -> Result<&'static dyn Effect, CandidateError> {
-    let defined = defined();
-    let all = || EFFECTS.iter().chain(&defined).copied();
-    let effect = all().find(|effect| effect.info().id == name);
-    effect.ok_or_else(|| {
-        let ids = all().map(|effect| effect.info().id);
-        let likeness = ids.map(|id| (strsim::jaro_winkler(name, id), id));
-        let near = likeness.filter(|(likeness, _)| *likeness > 0.7);
-        CandidateError::UnknownEffect {
-            name: name.to_string(),
-            nearest: near.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id),
-        }
-    })
+    let owned = || name.to_string();
+    match look_up(name) {
+        Found::One(effect) => Ok(effect),
+        Found::Several(called) => Err(CandidateError::SeveralEffects {
+            name: owned(),
+            called,
+        }),
+        Found::Similar(similar) => Err(CandidateError::UnknownEffect {
+            name: owned(),
+            similar,
+        }),
+    }
+}
+
+/// The ids of the effects of these names.
+///
+/// # Errors
+/// As [`effect_named`].
+pub fn effect_ids(names: &[String]) -> Result<Vec<String>, CandidateError> {
+    let ids = names
+        .iter()
+        .map(|name| Ok(effect_named(name)?.info().id.to_string()));
+    ids.collect()
 }
 
 fn joint(

@@ -55,7 +55,7 @@ mod ways;
 mod windows;
 
 pub use add::{Addition, Unhelpful, add_effects, candidates_named, with_refitted};
-pub use candidate::{Candidate, CandidateError, effect_named};
+pub use candidate::{Candidate, CandidateError, effect_ids, effect_named};
 pub use covariance::{Interval, intervals, intervals_of};
 pub use data::FitData;
 pub use drift::{Drift, DriftReport, DriftSession, OneValue, drift};

@@ -5,7 +5,7 @@ use super::signatures::{chart, title};
 use crate::effects::signature::signature;
 use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 use crate::output::number::given;
-use crate::output::table::plain_table;
+use crate::output::table::{plain_table, unbroken};
 use comfy_table::Table;
 
 /// Columns of a page.
@@ -16,7 +16,7 @@ pub fn overview() -> String {
     let mut table = table(["Name", "Effect", "Law"]);
     let infos = EFFECTS.iter().map(|effect| effect.info());
     table.add_rows(infos.map(|info| [info.id, info.title, info.law]));
-    table.to_string()
+    unbroken(table).to_string()
 }
 
 /// Everything there is to say of one effect, as plain text.
@@ -24,6 +24,7 @@ pub fn page(effect: &dyn Effect) -> String {
     let info = effect.info();
     let sections = [
         heading(info),
+        section("Also called", &wrapped(&info.aliases.join(", "))),
         section("Law", &wrapped(info.law)),
         section("Parameters", &parameters(info)),
         section("On a joint that slides", &on_slide(effect)),
@@ -33,7 +34,10 @@ pub fn page(effect: &dyn Effect) -> String {
         section("Experiment", &wrapped(info.experiment)),
         section("Reference", &wrapped(info.reference)),
     ];
-    sections.join("\n\n") + "\n"
+    let sections = sections
+        .into_iter()
+        .filter(|section| section.contains('\n'));
+    sections.collect::<Vec<_>>().join("\n\n") + "\n"
 }
 
 /// Law and parameters there, in m and N.
@@ -110,7 +114,7 @@ fn parameters(info: &EffectInfo) -> String {
             parameter.meaning,
         ]);
     }
-    table.to_string()
+    unbroken(table).to_string()
 }
 
 fn off(parameter: &Parameter) -> String {

@@ -3,6 +3,7 @@
 use super::super::weight_arg::WeightArg;
 use super::super::{Talk, page};
 use super::GainsArgs;
+use handstand::fitting::effect_ids;
 use handstand::model::Model;
 use handstand::synth::export::Provenance;
 use handstand::synth::{Format, Request, Sensors, Time, balanced, upright};
@@ -51,8 +52,9 @@ pub(in crate::cli) fn requested(
 }
 
 /// Takes these effects out of the model; which ones they were.
-fn leave_out<'a>(model: &mut Model, without: &'a [String]) -> Result<&'a [String]> {
-    for id in without {
+fn leave_out(model: &mut Model, without: &[String]) -> Result<Vec<String>> {
+    let without = effect_ids(without)?;
+    for id in &without {
         let before = model.effects.len();
         model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {

@@ -225,6 +225,7 @@ fn info(definition: &LawDefinition, off: &[Option<f64>]) -> &'static EffectInfo 
     Box::leak(Box::new(EffectInfo {
         id: text(&definition.name),
         title: text(&definition.name),
+        aliases: &[],
         law: text(&format!("torque = {}", definition.torque)),
         scope: Scope::AnyJoint,
         site: Site::Joint,
