@@ -8,7 +8,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let cli = cli::Cli::typed();
     let talk = cli.talk();
-    match std::panic::catch_unwind(|| cli.command.run(&talk)) {
+    match std::panic::catch_unwind(|| cli.run(&talk)) {
         Ok(Ok(outcome)) => ExitCode::from(outcome.exit_code()),
         Ok(Err(error)) => {
             let code = error.exit_code();

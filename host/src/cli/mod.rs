@@ -53,6 +53,7 @@ mod talk;
 mod view;
 mod virtual_robot;
 mod weight_arg;
+mod welcome;
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use handstand::Result;
@@ -72,9 +73,9 @@ pub struct Cli {
     /// Print nothing on stderr but errors
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// The command to run
+    /// The command to run; without one, where to begin
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
 }
 
 const FIRST: &str = "A LOG is a CSV file, or some of its data rows counted from 0: drop.csv:26-139";
@@ -84,6 +85,17 @@ impl Cli {
     pub fn typed() -> Cli {
         let matches = help::grouped(Cli::command()).get_matches();
         Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    }
+
+    /// Runs the command; without one, says where to begin.
+    ///
+    /// # Errors
+    /// As [`Command::run`].
+    pub fn run(&self, talk: &Talk) -> Result<ExitStatus> {
+        match &self.command {
+            Some(command) => command.run(talk),
+            None => welcome::run(talk),
+        }
     }
 
     /// Where this run's output goes.

@@ -46,7 +46,7 @@ fn help() {
     golden(
         &bench(),
         "help",
-        &["--help", "compare --help", "diagnose --help"],
+        &["", "--help", "compare --help", "diagnose --help"],
     );
 }
 
@@ -96,7 +96,16 @@ fn servos() {
 
 #[test]
 fn effects() {
-    golden(&bench(), "effects", &["effects", "effects coulomb"]);
+    golden(
+        &bench(),
+        "effects",
+        &[
+            "effects",
+            "effects coulomb",
+            "effects damping",
+            "effects frction",
+        ],
+    );
 }
 
 #[test]

@@ -27,6 +27,7 @@ mod laws;
 #[cfg(unix)]
 mod mcap;
 mod mixed_motions;
+mod names;
 mod rate_sensors;
 #[cfg(unix)]
 mod recipes;
