@@ -81,6 +81,7 @@ fn text(demo: &RobotDemo) -> String {
         ("Value", &|effect| effect.key.clone()),
         ("True", &|effect| exact(effect.true_value)),
         ("Estimated", &|effect| or_dash(effect.estimate, exact)),
+        ("95 % interval", &ScoredEffect::interval_words),
     ];
     let named = match (demo.named, demo.verdict) {
         (true, _) => "The diagnosis named what was hidden.",

@@ -91,7 +91,8 @@ fn table(demos: &[RobotDemo]) -> Table {
 }
 
 fn line(demo: &RobotDemo) -> [String; 5] {
-    let effects: Vec<String> = demo.effects.iter().map(effect).collect();
+    let effects = demo.effects.chunk_by(|a, b| a.address == b.address);
+    let effects: Vec<String> = effects.map(|values| effect(&values[0])).collect();
     let named = match demo.named {
         true => "yes".to_string(),
         false => format!("NO: {}", demo.added.join(", ")),

@@ -27,9 +27,9 @@ pub fn html(demo: &RobotDemo) -> String {
             id: "first-link",
             title: "The first link",
             lead: "Its angle from upright while the CM-5's firmware balances the robot, from the \
-                   same start. The scales differ.",
+                   same start; the scales are the same. Drag across a chart to zoom.",
             body: pair(demo, "degrees from upright", |attempt| {
-                vec![curve(attempt, "first link", Tone::Ink, |s| s.lean_rad)]
+                vec![curve(attempt, "first link", Tone::Blue, |s| s.lean_rad)]
             }),
         },
         Section {
@@ -47,7 +47,9 @@ pub fn html(demo: &RobotDemo) -> String {
             id: "hidden",
             title: "What was hidden, and what was found",
             lead: "The robot had these effects, and its owner's model had not. The diagnosis saw \
-                   recordings alone.",
+                   recordings alone. A wide interval says that the effect is there and this value \
+                   of it is hardly known: of a dead zone, what a command loses (the punch) shows, \
+                   and the width below it does not.",
             body: effects(demo),
         },
     ];
@@ -80,14 +82,18 @@ fn pair(demo: &RobotDemo, label: &str, curves: impl Fn(&BalanceAttempt) -> Vec<C
         ("as believed", &demo.nominal),
         ("as learned", &demo.learned),
     ];
+    let mut charts = sides.map(|(name, attempt)| {
+        let title = format!("Model {name}: {}", said(attempt));
+        Chart::new(title, "time, s", label, curves(attempt))
+    });
+    // What is compared has the same scales; where a robot falls, they hold it down to the ground.
+    Chart::share_axes(&mut charts);
     html! {
         div style=(PAIR) {
-            @for (name, attempt) in sides {
-                @let title = format!("Model {name}: {}", said(attempt));
-                @let chart = Chart::new(title.clone(), "s", label, curves(attempt));
+            @for chart in &charts {
                 figure {
-                    figcaption { (title) }
-                    (chart.svg(460.0, 300.0))
+                    figcaption { (chart.title) }
+                    (chart.zoomable_svg(460.0, 300.0))
                     div.legend { (chart.legend()) }
                 }
             }
@@ -98,6 +104,7 @@ fn pair(demo: &RobotDemo, label: &str, curves: impl Fn(&BalanceAttempt) -> Vec<C
 fn effects(demo: &RobotDemo) -> Markup {
     let headings = html! {
         th { "Effect" } th { "Value" } th.number { "True" } th.number { "Estimated" }
+        th.number { "95 % interval" }
     };
     let rows = html! {
         @for effect in &demo.effects {
@@ -106,6 +113,7 @@ fn effects(demo: &RobotDemo) -> Markup {
                 td { (effect.key) }
                 td.number { (exact(effect.true_value)) }
                 td.number { (effect.estimate.map_or("not found".to_string(), exact)) }
+                td.number { (effect.interval_words()) }
             }
         }
     };

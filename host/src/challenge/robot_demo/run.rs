@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::fitting::{Candidate, Progress};
 use crate::log::LogSet;
 use crate::model::Model;
+use crate::output::number::exact;
 use crate::output::write_new;
 use serde::Serialize;
 use std::path::Path;
@@ -44,23 +45,25 @@ pub struct RobotDemo {
     pub verdict: Verdict,
     /// Effects that were added.
     pub added: Vec<String>,
-    /// The hidden effects.
+    /// The values of the hidden effects.
     pub effects: Vec<ScoredEffect>,
     /// Whether all of them were added, and no others.
     pub named: bool,
 }
 
-/// A hidden effect, and what was estimated of it.
+/// A value of a hidden effect, and what was estimated of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScoredEffect {
-    /// As `delay@all`.
+    /// The effect as `delay@all`.
     pub address: String,
-    /// Its first value, with the key.
+    /// Key of the value.
     pub key: String,
     /// The truth.
     pub true_value: f64,
     /// The estimate, where the effect was added; of a delay without the recording's own.
     pub estimate: Option<f64>,
+    /// The 95 % interval that the diagnosis gave, where it found the effect.
+    pub interval: Option<[f64; 2]>,
 }
 
 /// Runs the whole circle with the robot of this seed; everything is written to `dir`, which must be
@@ -105,7 +108,7 @@ pub fn run(seed: u64, dir: &Path, hear: &(dyn Fn(DemoStep) + Sync)) -> Result<Ro
         verdict: taught.diagnosis.verdict,
         named: names_all(&robot.answer.effects, &taught.added),
         effects: (robot.answer.effects.iter())
-            .map(|effect| ScoredEffect::of(effect, &model))
+            .flat_map(|effect| ScoredEffect::of(effect, &model, &taught.diagnosis))
             .collect(),
         added: taught.added,
     };
@@ -119,16 +122,30 @@ fn names_all(hidden: &[RobotEffect], added: &[String]) -> bool {
 }
 
 impl ScoredEffect {
-    fn of(hidden: &RobotEffect, model: &Model) -> ScoredEffect {
+    /// Each value of a hidden effect.
+    fn of(hidden: &RobotEffect, model: &Model, diagnosis: &Diagnosis) -> Vec<ScoredEffect> {
         let mut effects = model.effects.iter();
         let found = effects.find(|effect| Candidate::from(*effect).to_string() == hidden.address);
-        let estimate = found.and_then(|effect| effect.values.first().copied());
-        let (key, true_value) = hidden.parameters.first().cloned().unwrap_or_default();
-        ScoredEffect {
-            address: hidden.address.clone(),
-            key,
-            true_value,
-            estimate,
-        }
+        let mut told = diagnosis.effects.iter();
+        let told = told.find(|effect| effect.address() == hidden.address);
+        let values = hidden.parameters.iter().enumerate();
+        let scored = values.map(|(index, (key, true_value))| {
+            let fitted = told.and_then(|effect| effect.parameters.get(index));
+            ScoredEffect {
+                address: hidden.address.clone(),
+                key: key.clone(),
+                true_value: *true_value,
+                estimate: found.and_then(|effect| effect.values.get(index).copied()),
+                interval: fitted.map(|fitted| [fitted.low, fitted.high]),
+            }
+        });
+        scored.collect()
+    }
+
+    /// The interval in words; a dash where there is none.
+    pub fn interval_words(&self) -> String {
+        self.interval.map_or("-".to_string(), |[low, high]| {
+            format!("{} to {}", exact(low), exact(high))
+        })
     }
 }
