@@ -186,15 +186,26 @@ fn log_table(plan: &ModelPlan) -> String {
     text
 }
 
-/// A number as TOML writes it.
+/// A number as TOML writes it, with twelve significant digits: what is beyond them is rounding of
+/// the arithmetic that made it.
 fn number(value: f64) -> String {
-    toml_edit::Value::from(value).to_string()
+    let rounded = format!("{value:.11e}").parse().unwrap_or(value);
+    toml_edit::Value::from(rounded).to_string()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::model::Drive;
+
+    #[test]
+    fn a_number_that_was_computed_is_written_without_its_rounding() {
+        let even_rod = 0.3 * 0.25 * 0.25 / 12.0;
+        assert_eq!(format!("{even_rod}"), "0.0015624999999999999");
+        assert_eq!(number(even_rod), "0.0015625");
+        assert_eq!(number(9.81), "9.81");
+        assert_eq!(number(-2.0), "-2.0");
+    }
 
     fn link(drive: &str) -> LinkPlan {
         LinkPlan {
