@@ -7,6 +7,7 @@ use super::explanation::{Explanation, VerdictEvidence};
 use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
 use super::hypothesis::Hypothesis;
 use super::longer_runs::longer_runs;
+use super::relative_scale;
 use super::stability;
 use super::values::{compared, contradicted};
 use super::words;
@@ -54,6 +55,8 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
         shorter_step_s: (step_s < evaluator.file_step_s).then_some(step_s),
         windows: windows(evaluator),
     };
+    let scale = relative_scale::warning(&diagnosis, &evaluator.start, &evaluator.known);
+    diagnosis.warnings.extend(scale);
     words::complete(&mut diagnosis);
     // What decides is said at once.
     let at = diagnosis.summary.len().min(1);
@@ -175,12 +178,16 @@ fn ruled_out(evidence: &VerdictEvidence, rivals: &[&Hypothesis]) -> Vec<RuledOut
     let tried = evidence.tried;
     let values = tried.values.iter().chain(&tried.values_refitted);
     let rest = values.chain(&tried.hypotheses).filter(|h| !kept(h));
-    let rows = rest.map(|h| RuledOut {
-        set: h.names(),
-        training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
-        held_out_error_rad: held_out(h).map(BlockErrors::rms_rad),
-        bic_change: evidence.evaluator.bic_change(base, h),
-        why: why_not(evidence, h),
+    let rows = rest.map(|h| {
+        let (as_good, why) = why_not(evidence, h);
+        RuledOut {
+            set: h.names(),
+            training_error_rad: h.training_rms_rad(&evidence.evaluator.search),
+            held_out_error_rad: held_out(h).map(BlockErrors::rms_rad),
+            bic_change: evidence.evaluator.bic_change(base, h),
+            as_good,
+            why,
+        }
     });
     rows.fold(Vec::new(), each_once)
 }
@@ -204,35 +211,46 @@ fn held_out(hypothesis: &Hypothesis) -> Option<&BlockErrors> {
     hypothesis.evaluation.as_ref()?.held_out.as_ref()
 }
 
-fn why_not(evidence: &VerdictEvidence, hypothesis: &Hypothesis) -> String {
-    let evaluator = evidence.evaluator;
+/// Whether a hypothesis does as well as the chosen explanation, and why it was not chosen.
+fn why_not(evidence: &VerdictEvidence, hypothesis: &Hypothesis) -> (bool, String) {
+    let (evaluator, explanation) = (evidence.evaluator, evidence.explanation);
     // A value refitted alone is compared with the model as given.
     let alone = hypothesis.values.len() == 1 && hypothesis.search.free.len() == 1;
     let base = match alone {
         true => &evaluator.given,
         false => &evaluator.base,
     };
-    let why = if hypothesis.rests_on_bound() {
-        "its best value is on a bound, where it vanishes or stops being physical"
-    } else if hypothesis.search_mean > 0.99 * base.search_mean {
-        "it does not lower the error"
-    } else if evaluator.held_out.is_some() && held_out(hypothesis).is_none() {
-        "others leave far less on the training motions"
-    } else if held_out(hypothesis).is_some_and(|e| e.mean() > base.deciding_mean()) {
-        "it fits the training motions and makes the held-out ones worse"
-    } else {
-        match evidence.explanation {
-            Explanation::Given(_) => "what it gains may be chance",
-            Explanation::Effects(best) if hypothesis.set.len() > best.set.len() => {
-                "one more effect brings no significant reduction"
-            }
-            explanation if evaluator.clearly_worse(hypothesis, explanation.hypothesis(), base) => {
-                return better(&explanation.name(), explanation.hypothesis(), hypothesis);
-            }
-            _ => "the chosen explanation does as well and is simpler",
+    let chosen = explanation.hypothesis();
+    let out = |why: &str| (false, why.to_string());
+    if hypothesis.rests_on_bound() {
+        return out("its best value is on a bound, where it vanishes or stops being physical");
+    }
+    let worse = || evaluator.clearly_worse(hypothesis, chosen, base);
+    match explanation {
+        _ if hypothesis.search_mean > 0.99 * base.search_mean => out("it does not lower the error"),
+        _ if evaluator.held_out.is_some() && held_out(hypothesis).is_none() => {
+            out("others leave far less on the training motions")
         }
-    };
-    why.to_string()
+        _ if held_out(hypothesis).is_some_and(|e| e.mean() > base.deciding_mean()) => {
+            out("it fits the training motions and makes the held-out ones worse")
+        }
+        Explanation::Given(_) => {
+            let why = "the model explains the motions without it, and what it gains may be chance";
+            (hypothesis.deciding().is_some(), why.to_string())
+        }
+        _ if worse() => {
+            let better = better(&explanation.name(), chosen, hypothesis);
+            (false, better)
+        }
+        Explanation::Effects(best) if hypothesis.set.len() > best.set.len() => {
+            let why = "one more effect brings no significant reduction";
+            (true, why.to_string())
+        }
+        _ => {
+            let why = "the chosen explanation does as well and is simpler";
+            (true, why.to_string())
+        }
+    }
 }
 
 /// That `best` is significantly better than another, in figures that show it.

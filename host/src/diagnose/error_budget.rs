@@ -8,7 +8,7 @@ use super::block_errors::{BlockErrors, PairedSums, bootstrap, paired};
 use super::budget::LOOK;
 use super::evaluator::Evaluator;
 use super::explanation::{Explanation, VerdictEvidence};
-use super::findings::{BudgetShare, BudgetedPart};
+use super::findings::{BudgetShare, BudgetedPart, FREE_VALUES};
 use super::hypothesis::Hypothesis;
 use crate::fitting::{Candidate, FitOptions, fit};
 use crate::model::ParameterPath;
@@ -71,7 +71,7 @@ fn name(chosen: &Hypothesis, part: &Part) -> String {
             let paths = chosen.values.iter().map(ToString::to_string);
             paths.collect::<Vec<String>>().join(" + ")
         }
-        Part::Free => "free values".to_string(),
+        Part::Free => FREE_VALUES.to_string(),
     }
 }
 

@@ -64,7 +64,7 @@ pub struct Alternative {
     pub same_law: bool,
 }
 
-/// A candidate that was tried and not chosen.
+/// A candidate that was tried and not chosen: ruled out, or as good and not needed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RuledOut {
     /// Effects tried together, as `id@joint`.
@@ -76,6 +76,9 @@ pub struct RuledOut {
     /// PredictionChange of the Bayesian information criterion against the base model; negative is
     /// better.
     pub bic_change: f64,
+    /// Whether these motions tell it from the chosen explanation at all: if not, it does as well
+    /// and is not needed, which rules nothing out.
+    pub as_good: bool,
     /// Why it was not chosen, in words.
     pub why: String,
 }
@@ -117,6 +120,9 @@ pub struct BudgetShare {
     /// Upper end.
     pub high: f64,
 }
+
+/// What the error budget calls the values that the file frees.
+pub const FREE_VALUES: &str = "free values";
 
 /// A part of the explanation in the error budget.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -163,7 +169,7 @@ pub struct Diagnosis {
     pub alternatives: Vec<Alternative>,
     /// Base values refitted along.
     pub base: Vec<FittedValue>,
-    /// What was tried and ruled out, best first.
+    /// What was tried and not chosen, best first.
     pub ruled_out: Vec<RuledOut>,
     /// Structure of the residual.
     pub residual_structure: Option<ResidualStructure>,
@@ -238,7 +244,10 @@ impl Diagnosis {
         let corrected = wrong.map(|wrong| format!("{} corrected", wrong.fitted.path));
         let parts: Vec<String> = effects.chain(corrected).collect();
         if !parts.is_empty() {
-            models.push((format!("with {}", parts.join(", ")), self.applied_to(model)));
+            models.push((
+                format!("the model with {}", parts.join(", ")),
+                self.applied_to(model),
+            ));
         }
         models
     }

@@ -26,6 +26,7 @@ mod one_sided;
 mod options;
 mod pipeline;
 mod progress;
+mod relative_scale;
 mod replacement;
 mod residual_structure;
 mod restarts;
@@ -40,8 +41,8 @@ pub mod words;
 
 pub use candidates::candidates;
 pub use findings::{
-    Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, Fold, MotionError,
-    ResidualStructure, RuledOut, Verdict, WrongValue,
+    Alternative, BudgetShare, BudgetedPart, Diagnosis, FREE_VALUES, FittedEffect, Fold,
+    MotionError, ResidualStructure, RuledOut, Verdict, WrongValue,
 };
 pub use inseparable::how_to_measure;
 pub use log_outcome::{LogOutcome, OutcomeFile, OutcomeKey, OutcomeValue, outcomes_in};

@@ -1,7 +1,8 @@
-//! What effects are called in sentences.
+//! What effects and values are called in sentences.
 
 use super::findings::FittedEffect;
 use crate::effects;
+use crate::model::{JointField, LinkField, ParameterPath};
 
 /// "Coulomb friction at joint 1".
 pub(crate) fn effect_name(effect: &FittedEffect) -> String {
@@ -14,6 +15,45 @@ pub(crate) fn at_joint(kind: &str, title: &str, joint: Option<usize>) -> String 
         (Some(joint), _) => format!("{title} at joint {joint}"),
         (None, "") => title.to_string(),
         (None, _) => format!("{title} at all driven joints"),
+    }
+}
+
+/// A value of the model by its address, in words: "the inertia of link 1", "viscous friction at
+/// joint 1", "gap_rad of backlash of the gear at joint 1"; the text itself where it is no address.
+pub(crate) fn value_name(path: &str) -> String {
+    match path.parse() {
+        Ok(ParameterPath::Link { index, field }) => {
+            let what = match field {
+                LinkField::Length => "length",
+                LinkField::Com => "centre-of-mass distance",
+                LinkField::Mass => "mass",
+                LinkField::Inertia => "inertia",
+            };
+            format!("the {what} of link {}", index + 1)
+        }
+        Ok(ParameterPath::Joint { index, field }) => {
+            let what = match field {
+                JointField::StallTorque => "stall torque",
+                JointField::StallForce => "stall force",
+                JointField::NoLoadSpeed | JointField::NoLoadLinearSpeed => "no-load speed",
+                JointField::GainPerRad
+                | JointField::GainSPerRad
+                | JointField::GainPerM
+                | JointField::GainSPerM => "gain",
+            };
+            format!("the {what} of joint {}", index + 1)
+        }
+        Ok(path @ ParameterPath::Effect { id, joint, .. }) => {
+            let Some(info) = effects::named(id).map(|effect| effect.info()) else {
+                return path.to_string();
+            };
+            let name = at_joint(id, info.title, joint.map(|joint| joint + 1));
+            match info.parameters {
+                [_] => name,
+                _ => format!("{} of {name}", path.key()),
+            }
+        }
+        Err(_) => path.to_string(),
     }
 }
 

@@ -5,11 +5,11 @@
 
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
 use super::inseparable::{inseparable, same_in_other_words};
-use super::names::{effect_name, joined, listed};
+use super::names::{effect_name, joined, listed, value_name};
 use super::one_sided;
 use super::warnings::{on_bound, pairs, shorter_steps, unidentified};
 
-use crate::output::number::{measured, short};
+use crate::output::number::{measured, percent, short, with_unit};
 
 /// Stands in [`Diagnosis::next`] for the model file; who knows its name puts it there.
 pub const MODEL: &str = "MODEL";
@@ -51,20 +51,25 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
         }
         Verdict::WrongValue => wrong_values(&diagnosis.wrong_values),
         Verdict::Named => format!("The model lacks {names}."),
-        Verdict::Ambiguous => format!("Equally good explanations: {}.", rivals(diagnosis)),
+        Verdict::Ambiguous => rivals(diagnosis),
         Verdict::Unexplained if diagnosis.effects.is_empty() => {
             match diagnosis.wrong_values.as_slice() {
                 [] => one_sided::headline(diagnosis).unwrap_or_else(|| {
                     "Something is missing, and no known effect explains it.".into()
                 }),
-                wrong => format!(
-                    "{} That is not all{}.",
-                    wrong_values(wrong),
-                    share(diagnosis)
-                ),
+                wrong => {
+                    let share = share(diagnosis);
+                    let share =
+                        share.map_or(String::new(), |share| format!("; it removes {share}"));
+                    format!("{} That is not all{share}.", wrong_values(wrong))
+                }
             }
         }
-        Verdict::Unexplained => format!("The model lacks more than {names}{}.", share(diagnosis)),
+        Verdict::Unexplained => {
+            let share = share(diagnosis);
+            let share = share.map_or(String::new(), |share| format!(" and removes {share}"));
+            format!("No known effect explains all of it; {names} comes closest{share}.")
+        }
         Verdict::Unfit => "These data can't answer the question.".into(),
     }
 }
@@ -94,46 +99,72 @@ pub(crate) fn change(wrong: &WrongValue) -> String {
     format!("{} -> {to}", short(wrong.given))
 }
 
-/// ": they remove 96 % of the squared error"; nothing where they remove none.
-fn share(diagnosis: &Diagnosis) -> String {
+/// "96 % of the squared error" that what was found removes; nothing where it removes none.
+fn share(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
     let removed = 1.0 - (error.after_rad / error.before_rad).powi(2);
-    match removed > 0.0 {
-        true => format!(
-            ", which removes {} % of the squared error",
-            short(100.0 * removed)
-        ),
-        false => String::new(),
-    }
+    (removed > 0.0).then(|| format!("{} of the squared error", percent(removed)))
 }
 
-/// What an explanation changes: "A at joint 1 and B", "another value of link1.mass_kg".
+/// What an explanation changes: "A at joint 1 and B", "another value of the mass of link 1".
 pub(crate) fn explained_by(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
     match effects {
         [] => {
             let paths = wrong
                 .iter()
-                .map(|w| format!("another value of {}", w.fitted.path));
+                .map(|w| format!("another value of {}", value_name(&w.fitted.path)));
             listed(paths.collect())
         }
         effects => joined(effects),
     }
 }
 
-/// "A at joint 1, or B and C, or 3 more".
+/// What an explanation says of the model, as a clause: "A at joint 1 and B are missing", "the mass of
+/// link 1 is twice what the file says".
+fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
+    match (effects, wrong) {
+        ([], []) => "the model needs no more than its free values refitted".to_string(),
+        ([], [first, rest @ ..]) => {
+            let clauses = rest
+                .iter()
+                .map(|w| format!("{} {}", value_name(&w.fitted.path), size(w)));
+            let first = format!("{} is {}", value_name(&first.fitted.path), size(first));
+            let all = std::iter::once(first).chain(clauses).collect();
+            format!("{} what the file says", listed(all))
+        }
+        ([one], _) => format!("{} is missing", effect_name(one)),
+        (several, _) => format!("{} are missing", joined(several)),
+    }
+}
+
+/// "twice", "0.85 times"; of a value that is 0 in the file, or changes its sign, what it is instead:
+/// "0.02 kg, not".
+fn size(wrong: &WrongValue) -> String {
+    let (ratio, fitted) = (wrong.fitted.value / wrong.given, &wrong.fitted);
+    match ratio {
+        ratio if !(ratio > 0.0 && ratio.is_finite()) => {
+            format!("{}, not", with_unit(&short(fitted.value), &fitted.unit))
+        }
+        ratio if (1.95..2.05).contains(&ratio) => "twice".to_string(),
+        ratio if (0.49..0.51).contains(&ratio) => "half".to_string(),
+        ratio => format!("{} times", short(ratio)),
+    }
+}
+
+/// "Either A is missing, or the mass of link 1 is twice what the file says."
 fn rivals(diagnosis: &Diagnosis) -> String {
     let others = diagnosis
         .alternatives
         .iter()
         .filter(|rival| !rival.same_law);
-    let others = others.map(|rival| explained_by(&rival.effects, &rival.wrong_values));
-    let first = explained_by(&diagnosis.effects, &diagnosis.wrong_values);
-    let mut sets: Vec<String> = std::iter::once(first).chain(others).collect();
-    let more = sets.len().saturating_sub(SHOWN);
-    sets.truncate(SHOWN);
+    let others = others.map(|rival| claim(&rival.effects, &rival.wrong_values));
+    let first = claim(&diagnosis.effects, &diagnosis.wrong_values);
+    let mut claims: Vec<String> = std::iter::once(first).chain(others).collect();
+    let more = claims.len().saturating_sub(SHOWN);
+    claims.truncate(SHOWN);
     match more {
-        0 => sets.join(", or "),
-        more => format!("{}, and {more} more", sets.join(", or ")),
+        0 => format!("Either {}.", claims.join(", or ")),
+        more => format!("Either {}, or one of {more} more.", claims.join(", or ")),
     }
 }
 
@@ -143,7 +174,7 @@ fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     lines.extend(inseparable(diagnosis));
     if diagnosis.verdict == Verdict::Unexplained && !diagnosis.effects.is_empty() {
         lines.push(
-            "It comes closest and is not the whole of it: do not take it for the cause.".into(),
+            "What comes closest is not the whole of it: do not take it for the cause.".into(),
         );
     }
     // The values of one of several explanations would be taken for an answer.

@@ -64,11 +64,19 @@ pub fn mrad_in_column(value_rad: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// A share of 1 as a percentage, with its sign.
+/// A share of 1 as a percentage, with its sign. What is not all of it is never 100 %: it has as many
+/// digits as tell it from that, three at most behind the point.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match special(percent) {
         Some(text) => format!("{text} %"),
+        None if (99.5..100.0).contains(&percent) => {
+            let digits = (1..=3).find(|digits| plain(percent, *digits) != plain(100.0, *digits));
+            match digits {
+                Some(digits) => format!("{} %", plain(percent, digits)),
+                None => "> 99.999 %".to_string(),
+            }
+        }
         None if percent.abs() < 10.0 => format!("{} %", plain(percent, 1)),
         None => format!("{} %", plain(percent, 0)),
     }

@@ -10,6 +10,9 @@ use crate::output::number::{NONE, mrad, short};
 use crate::output::plot::{Bar, largest};
 use maud::{Markup, html};
 
+/// Rows that are in sight from the start.
+const OPEN: usize = 8;
+
 pub(super) fn section(report: &Report) -> Option<Section> {
     let diagnosis = report.diagnosis.as_ref()?;
     if diagnosis.ruled_out.is_empty() && diagnosis.alternatives.is_empty() {
@@ -52,27 +55,58 @@ fn error(tried: &RuledOut) -> f64 {
     tried.held_out_error_rad.unwrap_or(tried.training_error_rad)
 }
 
+/// What was tried and not chosen: what does as well, then what does worse.
 fn tried(diagnosis: &Diagnosis) -> Markup {
-    let tried = sorted(&diagnosis.ruled_out);
+    let errors = diagnosis.ruled_out.iter().map(error);
+    let full = largest(errors.chain([diagnosis.error.after_rad]));
+    let as_good = sorted(&diagnosis.ruled_out, true);
+    let worse = sorted(&diagnosis.ruled_out, false);
+    html! {
+        @if !as_good.is_empty() {
+            h3 { "As good, not needed" }
+            p.note {
+                "These motions do not tell them from the explanation that was chosen: they are not "
+                "ruled out, but the chosen one is simpler."
+            }
+            (folded(diagnosis, &as_good, full))
+        }
+        @if !worse.is_empty() {
+            h3 { "Ruled out" }
+            (folded(diagnosis, &worse, full))
+        }
+        p.note {
+            "Bars show the held-out error; pale ones the fitted error of candidates that came no "
+            "further. The thin line is the error of the explanation on top."
+        }
+    }
+}
+
+/// The first rows in sight, the others behind a title.
+fn folded(diagnosis: &Diagnosis, tried: &[&RuledOut], full: f64) -> Markup {
+    let (first, rest) = tried.split_at(tried.len().min(OPEN));
+    html! {
+        (rows(diagnosis, first, full, found(diagnosis)))
+        @if !rest.is_empty() {
+            details {
+                summary { (rest.len()) " more" }
+                (rows(diagnosis, rest, full, false))
+            }
+        }
+    }
+}
+
+fn rows(diagnosis: &Diagnosis, tried: &[&RuledOut], full: f64, with_best: bool) -> Markup {
     let chosen = diagnosis.error.after_rad;
-    let full = largest(tried.iter().map(|tried| error(tried)).chain([chosen]));
     let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
     let headings = html! {
         th { "Added to the model" } th.number { (fitted) } th.number { (held_out) }
         th.wide {} th.number { "BIC change" } th { "Why not" }
     };
     let rows = html! {
-        @if found(diagnosis) { (best(diagnosis, full)) }
+        @if with_best { (best(diagnosis, full)) }
         @for tried in tried { (row(tried, full, chosen)) }
     };
-    html! {
-        h3 { "Ruled out" }
-        (table(&headings, &rows))
-        p.note {
-            "Bars show the held-out error; pale ones the fitted error of candidates that came no \
-             further. The thin line is the error of the explanation on top."
-        }
-    }
+    html! { div.tried { (table(&headings, &rows)) } }
 }
 
 fn found(diagnosis: &Diagnosis) -> bool {

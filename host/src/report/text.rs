@@ -1,8 +1,8 @@
 //! A diagnosis as text for the terminal.
 
 use super::words::{
-    floor_interval, in_columns, in_milli, measured_on, reduction, sentences, sorted, verdict_word,
-    with_ends,
+    floor_interval, in_columns, in_milli, measured_on, odd_shares, reduction, sentences, sorted,
+    verdict_word, with_ends,
 };
 use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
 use crate::diagnose::{Alternative, BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
@@ -11,7 +11,7 @@ use crate::fitting::{FittedValue, in_windows};
 use crate::model::MeasuredSignal;
 use crate::output::number::unit;
 use crate::output::number::{NONE, given, interval, mrad, percent, short};
-use crate::output::table::{TableColumn, plain_table, table_of};
+use crate::output::table::{TableColumn, plain_table, table_of, unbroken};
 use comfy_table::{CellAlignment, Table};
 
 /// Columns of a table.
@@ -28,7 +28,8 @@ pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
         error(diagnosis),
         budget(&diagnosis.budget, diagnosis.error.quantity),
         alternatives(&diagnosis.alternatives, diagnosis.error.quantity),
-        ruled_out(diagnosis),
+        not_chosen(diagnosis, true),
+        not_chosen(diagnosis, false),
         residual_structure(diagnosis),
         list("Next", &diagnosis.next),
         list("Warnings", &diagnosis.warnings),
@@ -144,13 +145,15 @@ fn budget(parts: &[BudgetedPart], quantity: MeasuredSignal) -> Option<String> {
     if parts.len() < 2 {
         return None;
     }
-    Some(format!(
+    let table = table_of(&parts.iter().collect::<Vec<_>>(), columns);
+    let mut text = format!(
         "Share of the squared error of the model as given that each part removes\n{}",
-        lines(
-            table_of(&parts.iter().collect::<Vec<_>>(), columns),
-            &[1, 2, 3, 4]
-        )?
-    ))
+        lines(table, &[1, 2, 3, 4])?
+    );
+    for sentence in odd_shares(parts) {
+        text += &format!("\n{sentence}");
+    }
+    Some(text)
 }
 
 fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Option<String> {
@@ -174,10 +177,16 @@ fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Optio
     list("As good", &lines)
 }
 
-fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
+/// What was tried and not chosen: what does as well, then what does worse.
+fn not_chosen(diagnosis: &Diagnosis, as_good: bool) -> Option<String> {
+    let rows = sorted(&diagnosis.ruled_out, as_good);
+    let title = match as_good {
+        true => "As good, not needed",
+        false => "Ruled out",
+    };
     let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
-    let mut table = plain_table(["Ruled out", &fitted, &held_out, "BIC", "Why"]);
-    for tried in sorted(&diagnosis.ruled_out).into_iter().take(SHOWN) {
+    let mut table = plain_table([title, &fitted, &held_out, "BIC", "Why"]);
+    for tried in rows.iter().take(SHOWN) {
         table.add_row([
             tried.set.join(" + "),
             mrad(tried.training_error_rad),
@@ -187,7 +196,7 @@ fn ruled_out(diagnosis: &Diagnosis) -> Option<String> {
         ]);
     }
     let mut lines = vec![lines(table, &[1, 2, 3])?];
-    lines.extend(and_more(diagnosis.ruled_out.len(), SHOWN));
+    lines.extend(and_more(rows.len(), SHOWN));
     Some(lines.join("\n"))
 }
 
@@ -210,6 +219,7 @@ fn list(title: &str, items: &[String]) -> Option<String> {
 /// The table's lines, numbers in these columns under each other; nothing without rows.
 fn lines(mut table: Table, numbers: &[usize]) -> Option<String> {
     table.set_width(WIDTH);
+    table = unbroken(table);
     for index in numbers {
         if let Some(column) = table.column_mut(*index) {
             column.set_cell_alignment(CellAlignment::Right);

@@ -1,11 +1,11 @@
 //! Words that the page and the text share.
 
-use crate::diagnose::names::{at_joint, listed};
+use crate::diagnose::names::{at_joint, listed, value_name};
 use crate::diagnose::words::headline;
-use crate::diagnose::{BudgetShare, Diagnosis, RuledOut, Verdict};
+use crate::diagnose::{BudgetShare, BudgetedPart, Diagnosis, FREE_VALUES, RuledOut, Verdict};
 use crate::effects::named;
 use crate::fitting::ErrorReduction;
-use crate::model::MeasuredSignal;
+use crate::model::{MeasuredSignal, ParameterPath};
 use crate::output::number::{mrad, percent};
 
 /// One word for a verdict, as in JSON.
@@ -21,15 +21,18 @@ pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A share with the ends of its interval: "96 % (94 % to 97 %)".
+/// A share with the ends of its interval: "96 % (94 to 97 %)".
 pub(super) fn with_ends(share: &BudgetShare) -> String {
     let [share, low, high] = [share.share, share.low, share.high].map(percent);
-    format!("{share} ({low} to {high})")
+    format!("{share} ({} to {high})", low.trim_end_matches(" %"))
 }
 
-/// A set of `id@joint` by its effects' titles.
+/// A set of `id@joint`, and of values by their addresses, in words.
 pub(super) fn set_name(set: &[String]) -> String {
     let name = |id: &String| {
+        if id.parse::<ParameterPath>().is_ok() {
+            return format!("another value of {}", value_name(id));
+        }
         let (kind, joint) = match id.split_once('@') {
             Some((kind, joint)) => (kind, joint.parse().ok()),
             None => (id.as_str(), None),
@@ -42,9 +45,41 @@ pub(super) fn set_name(set: &[String]) -> String {
     listed(set.iter().map(name).collect())
 }
 
-/// Tried sets, the smallest held-out error first; then those that never came that far.
-pub(super) fn sorted(ruled_out: &[RuledOut]) -> Vec<&RuledOut> {
-    let mut sorted: Vec<&RuledOut> = ruled_out.iter().collect();
+/// What the shares of a budget mean that no one expects: those below none and above all of the
+/// error.
+pub(super) fn odd_shares(budget: &[BudgetedPart]) -> Vec<&'static str> {
+    let any = |is: &dyn Fn(f64) -> bool| {
+        let shares = budget.iter();
+        let mut shares = shares.flat_map(|part| [part.alone.share, part.beyond_others.share]);
+        shares.any(is)
+    };
+    let frees = budget.iter().any(|part| part.part == FREE_VALUES);
+    let said = [
+        (
+            frees,
+            "Free values are those that the model file lets every fit change (`[fit] free`): alone, \
+             they are refitted and nothing is added.",
+        ),
+        (
+            any(&|share| share < 0.0),
+            "A negative share: with this part alone the error is larger than that of the model as \
+             given.",
+        ),
+        (
+            any(&|share| share > 1.0),
+            "More than 100 %: without this part the rest of the explanation does worse than the \
+             model as given.",
+        ),
+    ];
+    let said = said.into_iter().filter(|(is_said, _)| *is_said);
+    said.map(|(_, sentence)| sentence).collect()
+}
+
+/// Tried sets that do as well as what was chosen, or those that do not; the smallest held-out error
+/// first, then those that never came that far.
+pub(super) fn sorted(ruled_out: &[RuledOut], as_good: bool) -> Vec<&RuledOut> {
+    let rows = ruled_out.iter().filter(|tried| tried.as_good == as_good);
+    let mut sorted: Vec<&RuledOut> = rows.collect();
     let key = |tried: &RuledOut| tried.held_out_error_rad.unwrap_or(f64::INFINITY);
     sorted.sort_by(|a, b| {
         let held_out = key(a).total_cmp(&key(b));

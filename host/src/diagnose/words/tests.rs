@@ -93,7 +93,8 @@ fn rivals_are_named_without_values_and_with_the_experiment_that_separates_them()
     let said = said(Verdict::Ambiguous, first, vec![second]);
     assert_eq!(
         said.summary[0],
-        "Equally good explanations: Coulomb friction at joint 1, or dead zone of the drive at joint 1."
+        "Either Coulomb friction at joint 1 is missing, or dead zone of the drive at joint 1 is \
+         missing."
     );
     assert_eq!(
         said.summary[1],
@@ -126,7 +127,8 @@ fn a_partial_explanation_is_not_to_be_taken_for_the_cause() {
     );
     assert_eq!(
         partial.summary[0],
-        "The model lacks more than Coulomb friction at joint 1, which removes 99.8 % of the squared error."
+        "No known effect explains all of it; Coulomb friction at joint 1 comes closest and removes \
+         99.8 % of the squared error."
     );
     assert!(partial.summary[1].contains("do not take it for the cause"));
     let nothing = said(Verdict::Unexplained, vec![], vec![]);
@@ -254,6 +256,41 @@ fn what_does_as_well_as_a_free_value_is_said() {
         diagnosis.summary[1],
         "These logs cannot tell this from armature inertia at joint 1; what parts them: swing link 1 off its \
          drive and time it."
+    );
+}
+
+#[test]
+fn an_open_verdict_says_each_explanation_as_a_clause() {
+    let mut diagnosis = said(
+        Verdict::Ambiguous,
+        vec![],
+        vec![vec![effect("armature", Some(1))]],
+    );
+    let headline = |wrong_values| {
+        diagnosis.wrong_values = wrong_values;
+        super::headline(&diagnosis)
+    };
+    let or = "what the file says, or armature inertia at joint 1 is missing.";
+    let twice = wrong("link1.inertia_kg_m2", 0.001, 0.002);
+    let damping = wrong("viscous@1.coefficient_nm_s_rad", 0.02, 0.017);
+    assert_eq!(
+        headline(vec![twice.clone()]),
+        format!("Either the inertia of link 1 is twice {or}")
+    );
+    assert_eq!(
+        headline(vec![twice, damping]),
+        format!(
+            "Either the inertia of link 1 is twice and viscous friction at joint 1 0.850 times {or}"
+        )
+    );
+    // No factor leads from nothing to something, nor across zero.
+    assert_eq!(
+        headline(vec![wrong("coulomb@1.torque_nm", 0.0, 0.03)]),
+        format!("Either Coulomb friction at joint 1 is 0.0300 N m, not {or}")
+    );
+    assert_eq!(
+        headline(vec![wrong("gear_backlash@1.gap_rad", 0.1, 0.05)]),
+        format!("Either gap_rad of backlash of the gear at joint 1 is half {or}")
     );
 }
 

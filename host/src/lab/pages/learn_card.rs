@@ -23,6 +23,7 @@ pub fn card(
     let role = match card.role {
         CardRole::Found => "the best explanation",
         CardRole::Rival => "does as well",
+        CardRole::NotNeeded => "as good, not needed",
         CardRole::RuledOut => "ruled out",
     };
     let class = if card.role == CardRole::Found {

@@ -43,7 +43,9 @@ pub enum CardRole {
     Found,
     /// One that does as well.
     Rival,
-    /// One that was tried and not chosen.
+    /// One that does as well and is not needed: the chosen one is simpler.
+    NotNeeded,
+    /// One that was tried and does worse.
     RuledOut,
 }
 
@@ -161,7 +163,10 @@ fn tried(tried: &RuledOut) -> SavedCard {
         .cloned()
         .partition(|name| name.contains('.'));
     SavedCard {
-        role: CardRole::RuledOut,
+        role: match tried.as_good {
+            true => CardRole::NotNeeded,
+            false => CardRole::RuledOut,
+        },
         effects,
         values,
         fitted: Vec::new(),

@@ -267,6 +267,7 @@ fn ruled_out() -> Vec<RuledOut> {
         training_error_rad: 1e-3 * training,
         held_out_error_rad: held_out.map(|error| 1e-3 * error),
         bic_change,
+        as_good: why.starts_with("gains nothing over"),
         why: why.into(),
     };
     vec![
