@@ -1,5 +1,6 @@
 //! The verdict in words and the error in one line.
 
+use super::command::with_commands;
 use super::words::{floor_interval, in_milli, measured_on, reduction, sentences, verdict_word};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
@@ -55,7 +56,8 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
             ", on " (measured_on(error))
             @if let Some(reduction) = reduction(error).filter(|_| found) { "; " (reduction) }
             ". The floor" (floor_interval(error))
-            " is what sensor resolution and noise alone leave; no model can do better."
+            " is an estimate, from the readings themselves, of what sensor resolution and noise "
+            "alone leave: a good model comes near it, and by chance a little below."
         }
     }
 }
@@ -113,7 +115,7 @@ fn list(title: &str, class: &str, items: &[String]) -> Markup {
         @if !items.is_empty() {
             div class={ "box " (class) } {
                 h3 { (title) }
-                ul { @for item in items { li { (item) } } }
+                ul { @for item in items { li { (with_commands(item)) } } }
             }
         }
     }

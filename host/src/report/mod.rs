@@ -2,6 +2,7 @@
 
 mod candidates;
 mod closed_loop;
+mod command;
 pub mod effect_page;
 mod failures;
 mod file_names;

@@ -9,6 +9,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Dark colours and layout; screen, phone and paper.
 const STYLE: &str = include_str!("page.css");
+/// Zoom of the charts, and buttons that copy commands; without it the page shows the same.
+const SCRIPT: &str = include_str!("page.js");
 
 /// A part of the page that is there only if its data are.
 pub(crate) struct Section {
@@ -22,7 +24,7 @@ pub(crate) struct Section {
     pub(crate) body: Markup,
 }
 
-/// A self-contained page: no scripts, no fonts, no pictures from elsewhere.
+/// A self-contained page: no scripts, fonts or pictures from elsewhere.
 pub fn html(report: &Report) -> String {
     let parts: [fn(&Report) -> Option<Section>; 10] = [
         traces::section,
@@ -57,6 +59,7 @@ pub(crate) fn document(title: &str, header: &Markup, sections: &[Section]) -> St
                 }
             }
         }
+        script { (PreEscaped(SCRIPT)) }
     };
     self_contained(title, &style, &body)
 }

@@ -16,7 +16,7 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     };
     let body = html! {
         p { "Program version " b { (made.program_version) } "." }
-        pre { code { (made.command) } }
+        pre { code.command { (made.command) } }
         (table(&headings, &rows))
     };
     Some(Section {
@@ -53,8 +53,10 @@ pub(super) fn terms(report: &Report) -> Option<Section> {
                  10 mrad misses by 1 mm."
             }
             dt { "Floor" } dd {
-                "The error that the sensor's resolution and noise alone would leave. Even the true \
-                 model could not do better."
+                "The error that the sensor's resolution and noise alone would leave, estimated \
+                 from the readings themselves. The true model lies near it; the estimate may be \
+                 too high or too low by its interval, and by more where a driver filters the \
+                 readings."
             }
             dt { "Fit %" } dd {
                 "How much of the motion the model reproduces. 100 % is perfect; at 0 % a straight \

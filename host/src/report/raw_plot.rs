@@ -87,7 +87,7 @@ pub fn raw_html(title: &str, log: &RawLog, names: &[String]) -> String {
     let body = html! {
         @for column in &columns {
             figure {
-                (column.chart.svg(width, height))
+                (column.chart.zoomable_svg(width, height))
                 figcaption { (column.says) }
             }
         }

@@ -110,5 +110,5 @@ fn tests(comparison: &Comparison) -> Markup {
             }
         }
     };
-    html! { h3 { "Tests of the residual of " (comparison.model) } (table(&headings, &rows)) }
+    html! { h3 { "Tests of the residual: " (comparison.model) } (table(&headings, &rows)) }
 }

@@ -45,7 +45,8 @@ pub(super) fn section(report: &Report) -> Option<Section> {
         lead: "Above, the angle that was measured and what each model predicts for the same input. \
                Below, the residual: measured minus predicted. A good model's residual stays inside \
                the shaded floor and shows no pattern. The measurement is the thin line in front. \
-               Untick a name to hide its line.",
+               Untick a name to hide its line. Drag across a chart to zoom; double-click shows all \
+               of it again.",
         body,
     })
 }
@@ -190,21 +191,26 @@ fn chart(pair: &Pair) -> Markup {
         above.curve(broken(trace, course), tone)
     };
     let left = |trace: &Trace, tone| below.curve(broken(trace, residual(trace)), tone);
+    let angles_drawn = html! {
+        (above.starts(starts.iter().copied()))
+        g.traced {
+            (predicted(trace, BEFORE))
+            @if let Some(after) = pair.after { (predicted(after, AFTER)) }
+            (above.curve(timed(trace, &trace.measured), MEASURED))
+        }
+    };
+    let residuals_drawn = html! {
+        (below.starts(starts.iter().copied()))
+        (left(trace, BEFORE))
+        @if let Some(after) = pair.after { (left(after, AFTER)) }
+    };
     html! {
         svg viewBox="0 0 760 380" role="img" aria-label=(label) {
-            (above.columns(8)) (above.rows(5, label_above))
-            (above.starts(starts.iter().copied()))
-            g.traced {
-                (predicted(trace, BEFORE))
-                @if let Some(after) = pair.after { (predicted(after, AFTER)) }
-                (above.curve(timed(trace, &trace.measured), MEASURED))
-            }
-            (below.columns(8)) (below.rows(4, &label_below))
+            g.columns { (above.columns(8)) (below.columns(8)) }
+            (above.rows(5, label_above)) (below.rows(4, &label_below))
+            g.ticks { (below.x_labels(8, "time, s")) }
             @if floor_mrad > 0.0 { (below.band(-floor_mrad, floor_mrad, FLOOR)) }
-            (below.starts(starts.iter().copied()))
-            (left(trace, BEFORE))
-            @if let Some(after) = pair.after { (left(after, AFTER)) }
-            (below.x_labels(8, "time, s"))
+            (above.course(&angles_drawn)) (below.course(&residuals_drawn))
         }
     }
 }

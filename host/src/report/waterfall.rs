@@ -1,7 +1,8 @@
 //! How the error falls from model to model, down to the floor; and motion by motion.
 
+use super::command::quoted;
 use super::page::{Section, table};
-use super::words::{in_columns, in_milli, set_name, with_ends};
+use super::words::{in_columns, in_milli, odd_shares, set_name, with_ends};
 use super::{AFTER, BEFORE, FLOOR, Report, pooled};
 use crate::compare::Comparison;
 use crate::diagnose::{BudgetedPart, MotionError};
@@ -53,7 +54,7 @@ fn steps(chain: &[&Comparison]) -> Markup {
     html! {
         div.steps {
             @for (index, comparison) in chain.iter().enumerate() {
-                span { (comparison.model) }
+                span.model { (comparison.model) }
                 (bar(index).draw())
                 span.number {
                     (in_milli(errors[index], quantity))
@@ -96,8 +97,12 @@ fn by_part(budget: &[BudgetedPart], quantity: MeasuredSignal) -> Markup {
     };
     html! {
         h3 { "What each part removes" }
-        p { "Shares of the squared error of the model as given, with 95 % intervals. Parts that \
-             stand in for each other remove much alone and little beyond the others." }
+        p.lead {
+            "Shares of the squared error of the model as given, with 95 % intervals: 99 % of it is \
+             90 % of the RMS error, which stands beside. Parts that stand in for each other remove \
+             much alone and little beyond the others."
+            @for sentence in odd_shares(budget) { " " (quoted(sentence)) }
+        }
         (table(&headings, &rows))
     }
 }

@@ -175,7 +175,10 @@ fn diagnose_shows_the_closed_loop_with_what_it_found() {
     let text = bench.run(line);
     assert_eq!(text.code, Some(0), "{text:?}");
     let (_, table) = text.stdout.split_once("Closed loop with the plan").unwrap();
-    assert!(table.contains("the model as it is | with "), "{table}");
+    assert!(
+        table.contains("the model as it is | the model with "),
+        "{table}"
+    );
     let found = bench.run(&format!("{line} --json")).json();
     let [before, after] = ["before", "after"].map(|key| {
         let error = &found["closed_loop"][key]["signals"][0]["rms_error_rad"];

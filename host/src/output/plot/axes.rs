@@ -94,6 +94,11 @@ impl Axes {
         }
     }
 
+    /// What is drawn along x, with the scales that a page's script needs to stretch it.
+    pub(crate) fn course(&self, drawn: &Markup) -> Markup {
+        html! { g.course data-x=(self.x.as_data()) data-y=(self.y.as_data()) { (drawn) } }
+    }
+
     /// A curve, decimated to the pixels; a point that cannot be drawn leaves a gap.
     pub(crate) fn curve(&self, points: impl IntoIterator<Item = (f64, f64)>, tone: Tone) -> Markup {
         let path = decimate::path(points, &self.x, &self.y);

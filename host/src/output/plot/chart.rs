@@ -23,6 +23,9 @@ pub struct Chart {
     pub categories: Vec<String>,
     /// What is drawn, the last in front.
     pub curves: Vec<Curve>,
+    /// Lowest and highest x and y of the axes, as charts to be compared share them; those of the
+    /// curves without.
+    pub ends: Option<[(f64, f64); 2]>,
 }
 
 /// A curve, or dots.
@@ -87,6 +90,7 @@ impl Chart {
             y_label: y_label.into(),
             categories: Vec::new(),
             curves,
+            ends: None,
         }
     }
 
@@ -95,6 +99,20 @@ impl Chart {
         html! {
             svg viewBox=(format!("0 0 {width} {height}")) role="img" aria-label=(self.title) {
                 (self.drawn((0.0, 0.0), (width, height)))
+            }
+        }
+    }
+
+    /// As [`Chart::svg`], for a page whose script zooms along x.
+    pub(crate) fn zoomable_svg(&self, width: f64, height: f64) -> Markup {
+        let axes = self.axes((0.0, 0.0), (width, height));
+        let curves = html! { @for curve in &self.curves { (self.mark(curve, &axes)) } };
+        html! {
+            svg viewBox=(format!("0 0 {width} {height}")) role="img" aria-label=(self.title) {
+                g.columns { (axes.columns(COLUMNS)) }
+                (axes.rows(ROWS, &self.y_label))
+                g.ticks { (axes.x_labels(COLUMNS, &self.x_label)) }
+                (axes.course(&curves))
             }
         }
     }
@@ -113,6 +131,17 @@ impl Chart {
         text::chart(self)
     }
 
+    /// Gives charts the same axes: those that hold all of them.
+    pub fn share_axes(charts: &mut [Chart]) {
+        let spans: Vec<[(f64, f64); 2]> = charts.iter().map(|chart| chart.spans(0.04)).collect();
+        let around = |axis: usize| {
+            let ends = spans.iter().flat_map(|span| [span[axis].0, span[axis].1]);
+            span(ends, 0.0)
+        };
+        let ends = [around(0), around(1)];
+        charts.iter_mut().for_each(|chart| chart.ends = Some(ends));
+    }
+
     /// Lowest and highest x and y, with a share of the height to spare.
     pub(super) fn spans(&self, spare: f64) -> [(f64, f64); 2] {
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
@@ -128,12 +157,8 @@ impl Chart {
     }
 
     /// Axes and curves in a rectangle with this upper left corner and this size, px.
-    pub(super) fn drawn(&self, (left, top): (f64, f64), (width, height): (f64, f64)) -> Markup {
-        let [x, y] = self.spans(0.04);
-        let axes = Axes {
-            x: Scale::new(x, (left + 56.0, left + width - 12.0)),
-            y: Scale::new(y, (top + height - 38.0, top + 26.0)),
-        };
+    pub(super) fn drawn(&self, corner: (f64, f64), size: (f64, f64)) -> Markup {
+        let axes = self.axes(corner, size);
         let categories = self.categories.iter().cloned().enumerate();
         let categories: Vec<(f64, String)> = categories
             .map(|(place, label)| (place as f64, label))
@@ -146,6 +171,14 @@ impl Chart {
                 false => (axes.x_texts(&categories, &self.x_label)),
             }
             @for curve in &self.curves { (self.mark(curve, &axes)) }
+        }
+    }
+
+    fn axes(&self, (left, top): (f64, f64), (width, height): (f64, f64)) -> Axes {
+        let [x, y] = self.ends.unwrap_or_else(|| self.spans(0.04));
+        Axes {
+            x: Scale::new(x, (left + 56.0, left + width - 12.0)),
+            y: Scale::new(y, (top + height - 38.0, top + 26.0)),
         }
     }
 

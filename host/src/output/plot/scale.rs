@@ -57,6 +57,12 @@ impl Scale {
         self.places
     }
 
+    /// Values at the ends and their places, for scripts.
+    pub(super) fn as_data(&self) -> String {
+        let ((low, high), (first, last)) = (self.values, self.places);
+        format!("{low} {high} {first} {last}")
+    }
+
     /// Round values inside, about `wanted` of them, with their labels.
     pub(crate) fn ticks(&self, wanted: usize) -> Vec<(f64, String)> {
         let (low, high) = self.values;
