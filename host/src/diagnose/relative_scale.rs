@@ -27,18 +27,23 @@ pub(super) fn warning(
     let is_fitted = |path: &ParameterPath| scaling.contains(&path.to_string());
     let references = references(model, known, &is_fitted)?;
     let first = references.first()?;
-    let names = references.iter().map(|path| value_name(&path.to_string()));
+    let masses = match references.as_slice() {
+        [_] | [_, _] => {
+            let names = references.iter().map(|path| value_name(&path.to_string()));
+            listed(names.collect())
+        }
+        _ => "the masses and inertias of the links".to_string(),
+    };
     let (scale, they) = match scaling.len() {
         0 => return None,
         1 => ("scales", "it"),
         _ => ("scale", "they"),
     };
     Some(format!(
-        "{} {scale} with {}, which these logs do not determine: with twice the masses {they} would \
-         be twice as large, and the motion the same. Weigh what moves; `--known {first}` says that \
-         the file's value was measured",
-        listed(scaling),
-        listed(names.collect())
+        "{} {scale} with {masses}, which these logs do not determine: with twice the mass {they} \
+         would be twice as large, and the motion the same. Weigh what moves, put it into the file, \
+         and say so by `--known {first}`",
+        listed(scaling)
     ))
 }
 

@@ -1,7 +1,6 @@
 //! Finds effects by what people call them: ids, titles, aliases, and words of their laws.
 
 use super::{EFFECTS, Effect, EffectInfo, expression};
-use crate::output::spelling::nearest;
 
 /// What a name means.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +45,7 @@ fn names(info: &EffectInfo) -> impl Iterator<Item = &'static str> {
 }
 
 /// Effects whose names hold all the words of `name`; where there is none, those whose laws do;
-/// where there is none, the one that is spelled most like it.
+/// where there is none, those whose name is spelled most like it.
 fn similar(name: &str, all: &[&'static dyn Effect]) -> Vec<&'static dyn Effect> {
     let of_names = |info: &EffectInfo| names(info).collect::<Vec<_>>().join(" ");
     let of_law = |info: &EffectInfo| info.law.to_string();
@@ -66,13 +65,16 @@ fn similar(name: &str, all: &[&'static dyn Effect]) -> Vec<&'static dyn Effect> 
         let names = std::iter::once(info.id).chain(names(info));
         names.map(squeezed).collect::<Vec<_>>()
     };
-    let known: Vec<String> = all.iter().flat_map(spelled).collect();
-    let near = nearest(&squeezed(name), known.iter().map(String::as_str));
-    let near = near.and_then(|near| {
-        let so_called = |effect: &&&'static dyn Effect| spelled(effect).iter().any(|n| n == near);
-        all.iter().copied().find(|effect| so_called(&effect))
-    });
-    near.into_iter().collect()
+    let wanted = squeezed(name);
+    // A slip of the keyboard, not a likeness: "friction" is not meant by "frobnicate".
+    let slips = |known: &String| strsim::damerau_levenshtein(&wanted, known);
+    let known = all.iter().flat_map(spelled);
+    let near = known.filter(|known| slips(known) <= known.len() / 4);
+    let Some(near) = near.min_by_key(slips) else {
+        return Vec::new();
+    };
+    let so_called = |effect: &&'static dyn Effect| spelled(effect).contains(&near);
+    all.iter().copied().filter(so_called).collect()
 }
 
 /// Letters and digits alone, in lower case.

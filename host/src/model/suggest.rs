@@ -1,7 +1,6 @@
 //! Suggests the nearest known name, or the unit that a key lacks.
 
 use crate::effects::{Found, look_up};
-use crate::output::spelling::nearest;
 
 /// Which of the known names was meant, and which there are. Where effects are named, what people
 /// call them counts: `stribeck` for `stiction`.
@@ -22,6 +21,17 @@ pub fn suggest(name: &str, known: &[impl AsRef<str>]) -> String {
         ([], Some(near)) => format!("did you mean `{near}`? known here: {all}"),
         ([], None) => format!("known here: {all}"),
     }
+}
+
+/// The known name that is most like this one, if any is.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let slips = |known: &str| strsim::damerau_levenshtein(name, known);
+    known
+        .into_iter()
+        .map(|known| (strsim::jaro_winkler(name, known), known))
+        .filter(|(likeness, known)| *likeness > 0.8 || slips(known) <= known.len() / 3)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, known)| known)
 }
 
 /// Ids of the effects of this name, which may be an alias.

@@ -4,7 +4,6 @@
 pub mod append_file;
 pub mod number;
 pub mod plot;
-pub mod spelling;
 pub mod table;
 
 use crate::error::{Error, Result};

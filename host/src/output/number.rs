@@ -65,16 +65,16 @@ pub fn mrad_in_column(value_rad: f64) -> String {
 }
 
 /// A share of 1 as a percentage, with its sign. What is not all of it is never 100 %: it has as many
-/// digits as tell it from that, three at most behind the point.
+/// digits as tell it from that, two at most behind the point.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match special(percent) {
         Some(text) => format!("{text} %"),
         None if (99.5..100.0).contains(&percent) => {
-            let digits = (1..=3).find(|digits| plain(percent, *digits) != plain(100.0, *digits));
+            let digits = (1..=2).find(|digits| plain(percent, *digits) != plain(100.0, *digits));
             match digits {
                 Some(digits) => format!("{} %", plain(percent, digits)),
-                None => "> 99.999 %".to_string(),
+                None => "> 99.99 %".to_string(),
             }
         }
         None if percent.abs() < 10.0 => format!("{} %", plain(percent, 1)),
@@ -181,6 +181,11 @@ mod tests {
     #[test]
     fn percentages() {
         assert_eq!(percent(0.853), "85 %");
+        assert_eq!(percent(0.9967), "99.7 %");
+        assert_eq!(percent(0.99967), "99.97 %");
+        assert_eq!(percent(0.999999), "> 99.99 %");
+        assert_eq!(percent(1.0), "100 %");
+        assert_eq!(percent(1.07), "107 %");
         assert_eq!(percent(0.0), "0 %");
         assert_eq!(percent(0.0123), "1.2 %");
         assert_eq!(percent(-0.0001), "0.0 %");

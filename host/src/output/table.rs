@@ -4,6 +4,8 @@ use comfy_table::{ColumnConstraint, ContentArrangement, Table, TableComponent, W
 
 /// Longest word that is never broken.
 const MOST_UNBROKEN: usize = 40;
+/// Longest number with its interval that is never broken.
+const MOST_OF_NUMBER: usize = 28;
 
 /// A column: its heading, and what a row has under it.
 pub type TableColumn<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
@@ -47,11 +49,7 @@ pub fn unbroken(mut table: Table) -> Table {
     let longest = |index: usize| {
         let rows = table.header().into_iter().chain(table.row_iter());
         let cells = rows.filter_map(|row| row.cell_iter().nth(index));
-        let words = cells.flat_map(|cell| {
-            let words = cell.content();
-            let lengths = words.split_whitespace().map(|word| word.chars().count());
-            lengths.collect::<Vec<usize>>()
-        });
+        let words = cells.flat_map(|cell| word_lengths(&cell.content()));
         words.filter(|length| *length <= MOST_UNBROKEN).max()
     };
     let widths: Vec<Option<usize>> = (0..columns).map(longest).collect();
@@ -60,6 +58,17 @@ pub fn unbroken(mut table: Table) -> Table {
         column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(width)));
     }
     table
+}
+
+/// How long the parts of a cell are that stay in one line: its words; of a number with what belongs
+/// to it, as the ends of its interval, the whole.
+fn word_lengths(cell: &str) -> Vec<usize> {
+    let length = |text: &str| text.chars().count();
+    let number = cell.starts_with(|sign: char| sign.is_ascii_digit() || "-><".contains(sign));
+    match number && length(cell) <= MOST_OF_NUMBER {
+        true => vec![length(cell)],
+        false => cell.split_whitespace().map(length).collect(),
+    }
 }
 
 /// CSV: the headings, then a line for each of `rows`. No cell holds a comma.

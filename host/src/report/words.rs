@@ -21,10 +21,15 @@ pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A share with the ends of its interval: "96 % (94 to 97 %)".
+/// A share with the ends of its interval: "96 % (94 to 97)"; without them where they show no
+/// difference.
 pub(super) fn with_ends(share: &BudgetShare) -> String {
     let [share, low, high] = [share.share, share.low, share.high].map(percent);
-    format!("{share} ({} to {high})", low.trim_end_matches(" %"))
+    if low == share && high == share {
+        return share;
+    }
+    let [low, high] = [&low, &high].map(|end| end.trim_end_matches(" %"));
+    format!("{share} ({low} to {high})")
 }
 
 /// A set of `id@joint`, and of values by their addresses, in words.
@@ -45,6 +50,9 @@ pub(super) fn set_name(set: &[String]) -> String {
     listed(set.iter().map(name).collect())
 }
 
+/// A share that a table shows.
+const SEEN: f64 = 5e-4;
+
 /// What the shares of a budget mean that no one expects: those below none and above all of the
 /// error.
 pub(super) fn odd_shares(budget: &[BudgetedPart]) -> Vec<&'static str> {
@@ -61,12 +69,12 @@ pub(super) fn odd_shares(budget: &[BudgetedPart]) -> Vec<&'static str> {
              they are refitted and nothing is added.",
         ),
         (
-            any(&|share| share < 0.0),
+            any(&|share| share < -SEEN),
             "A negative share: with this part alone the error is larger than that of the model as \
              given.",
         ),
         (
-            any(&|share| share > 1.0),
+            any(&|share| share > 1.0 + SEEN),
             "More than 100 %: without this part the rest of the explanation does worse than the \
              model as given.",
         ),
@@ -113,11 +121,12 @@ pub(super) fn reduction(error: &ErrorReduction) -> Option<String> {
     let range = error
         .reduction
         .filter(|ends| ends.iter().all(|end| end.is_finite()));
-    let range = range.map_or(String::new(), |ends| {
-        let [low, high] = ends.map(percent);
+    let size = percent(reduction.abs());
+    let range = range.map(|ends| ends.map(percent));
+    let range = range.filter(|ends| ends.iter().any(|end| *end != size));
+    let range = range.map_or(String::new(), |[low, high]| {
         format!(" (95 % interval of the reduction: {low} to {high})")
     });
-    let size = percent(reduction.abs());
     reduction
         .is_finite()
         .then(|| format!("the error {verb} by {size}{range}"))
@@ -143,4 +152,58 @@ pub(super) fn sentences(diagnosis: &Diagnosis) -> impl Iterator<Item = &String> 
         .summary
         .iter()
         .filter(move |line| **line != headline)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn share(share: f64, low: f64, high: f64) -> BudgetShare {
+        BudgetShare {
+            error_rad: 1e-3,
+            share,
+            low,
+            high,
+        }
+    }
+
+    #[test]
+    fn a_value_of_an_effect_is_no_effect_at_every_joint() {
+        let name =
+            |set: &[&str]| set_name(&set.iter().map(ToString::to_string).collect::<Vec<_>>());
+        assert_eq!(
+            name(&["coulomb@1.torque_nm"]),
+            "another value of Coulomb friction at joint 1"
+        );
+        assert_eq!(
+            name(&["link1.mass_kg", "coulomb@1"]),
+            "another value of the mass of link 1 and Coulomb friction at joint 1"
+        );
+        assert_eq!(
+            name(&["coulomb@all"]),
+            "Coulomb friction at all driven joints"
+        );
+    }
+
+    #[test]
+    fn a_share_has_its_ends_where_they_differ() {
+        assert_eq!(with_ends(&share(0.25, 0.16, 0.38)), "25 % (16 to 38)");
+        assert_eq!(with_ends(&share(0.99999, 0.99998, 0.999999)), "> 99.99 %");
+    }
+
+    #[test]
+    fn shares_that_no_one_expects_are_explained() {
+        let part = |part: &str, alone: f64, beyond: f64| BudgetedPart {
+            part: part.to_owned(),
+            alone: share(alone, alone, alone),
+            beyond_others: share(beyond, beyond, beyond),
+        };
+        assert!(odd_shares(&[part("coulomb@1", 0.9, 0.5)]).is_empty());
+        let odd = |budget: &[BudgetedPart]| odd_shares(budget).join(" ");
+        assert!(odd(&[part(FREE_VALUES, 0.9, 0.5)]).contains("[fit] free"));
+        assert!(odd(&[part("coulomb@1", -0.59, 0.5)]).starts_with("A negative share"));
+        assert!(odd(&[part("coulomb@1", 0.9, 1.07)]).starts_with("More than 100 %"));
+        // What a table shows as 0.0 %, or as 100 %, needs no word.
+        assert!(odd_shares(&[part("coulomb@1", 1.0001, -0.0001)]).is_empty());
+    }
 }

@@ -33,6 +33,7 @@ mod rate_sensors;
 mod recipes;
 mod record;
 mod render;
+mod report_page;
 mod requests;
 mod riccati;
 mod robot_demo;

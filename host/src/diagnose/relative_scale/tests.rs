@@ -132,8 +132,8 @@ fn a_rig_without_a_known_torque_is_warned_of() {
     let said = warned(&arm(PASSIVE), &[]).unwrap();
     assert!(
         said.starts_with(
-            "coulomb@1.torque_nm scales with the mass of link 1, the inertia of link 1, the mass of \
-             link 2 and the inertia of link 2, which these logs do not determine"
+            "coulomb@1.torque_nm scales with the masses and inertias of the links, which these logs \
+             do not determine"
         ),
         "{said}"
     );

@@ -110,6 +110,32 @@ fn rivals_are_named_in_the_headline() {
 }
 
 #[test]
+fn what_does_as_well_is_not_ruled_out() {
+    let page = html(&sample::report());
+    let (_, tried) = page.split_once("<h3>As good, not needed</h3>").unwrap();
+    let (as_good, worse) = tried.split_once("<h3>Ruled out</h3>").unwrap();
+    assert!(as_good.contains("stribeck@1") && !worse.contains("stribeck@1"));
+    assert!(worse.contains("viscous@1") && !as_good.contains("viscous@1"));
+
+    let mut report = sample::report();
+    let tried = &mut report.diagnosis.as_mut().unwrap().ruled_out;
+    tried.retain(|tried| tried.as_good);
+    assert!(!html(&report).to_lowercase().contains("ruled out"));
+}
+
+#[test]
+fn a_long_table_shows_its_first_rows() {
+    let mut report = sample::report();
+    let tried = &mut report.diagnosis.as_mut().unwrap().ruled_out;
+    let worse = tried.iter().find(|tried| !tried.as_good).unwrap().clone();
+    tried.extend(std::iter::repeat_n(worse, 20));
+    let page = html(&report);
+    let (_, folded) = page.split_once("<summary>15 more</summary>").unwrap();
+    let (rows, _) = folded.split_once("</details>").unwrap();
+    assert_eq!(rows.matches("<tr").count(), 1 + 15);
+}
+
+#[test]
 fn a_model_alone_has_a_page() {
     let mut report = sample::report();
     report.diagnosis = None;
