@@ -45,6 +45,8 @@ pub struct FittedEffect {
 pub struct WrongValue {
     /// The value in the file.
     pub given: f64,
+    /// Whether the file frees it: its owner does not claim to know it.
+    pub free: bool,
     /// The value that the motions ask for.
     #[serde(flatten)]
     pub fitted: FittedValue,

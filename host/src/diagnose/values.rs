@@ -163,6 +163,7 @@ pub(super) fn compared(given: &Model, fitted: &[FittedValue]) -> Vec<WrongValue>
         let path: ParameterPath = fitted.path.parse().ok()?;
         Some(WrongValue {
             given: path.get(given)?,
+            free: given.free.contains(&path),
             fitted: fitted.clone(),
         })
     });

@@ -121,8 +121,15 @@ pub(crate) fn explained_by(effects: &[FittedEffect], wrong: &[WrongValue]) -> St
 
 /// What an explanation says of the model, as a clause: "A at joint 1 and B are missing", "the mass of
 /// link 1 is twice what the file says".
+/// Of values that the file frees, whose owner claims nothing of them, only where there are no
+/// others.
 fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
-    match (effects, wrong) {
+    let claimed: Vec<&WrongValue> = wrong.iter().filter(|w| !w.free).collect();
+    let wrong = match claimed.is_empty() {
+        true => wrong.iter().collect(),
+        false => claimed,
+    };
+    match (effects, wrong.as_slice()) {
         ([], []) => "the model needs no more than its free values refitted".to_string(),
         ([], [first, rest @ ..]) => {
             let clauses = rest

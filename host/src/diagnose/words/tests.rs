@@ -141,6 +141,7 @@ fn a_partial_explanation_is_not_to_be_taken_for_the_cause() {
 fn wrong(path: &str, given: f64, to: f64) -> WrongValue {
     WrongValue {
         given,
+        free: path.starts_with("viscous"),
         fitted: value(path, to, false),
     }
 }
@@ -278,10 +279,17 @@ fn an_open_verdict_says_each_explanation_as_a_clause() {
         format!("Either the inertia of link 1 is twice {or}")
     );
     assert_eq!(
-        headline(vec![twice, damping]),
-        format!(
-            "Either the inertia of link 1 is twice and viscous friction at joint 1 0.850 times {or}"
-        )
+        headline(vec![twice.clone(), damping.clone()]),
+        format!("Either the inertia of link 1 is twice {or}")
+    );
+    assert_eq!(
+        headline(vec![damping]),
+        format!("Either viscous friction at joint 1 is 0.850 times {or}")
+    );
+    let lighter = wrong("link1.mass_kg", 0.2, 0.17);
+    assert_eq!(
+        headline(vec![twice, lighter]),
+        format!("Either the inertia of link 1 is twice and the mass of link 1 0.850 times {or}")
     );
     // No factor leads from nothing to something, nor across zero.
     assert_eq!(

@@ -205,6 +205,7 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
         ],
         wrong_values: vec![WrongValue {
             given: 1.2,
+            free: false,
             fitted: fitted("motor.torque_nm", "N m", [1.47, 1.44, 1.5]),
         }],
         error: ErrorReduction {
