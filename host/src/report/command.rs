@@ -24,7 +24,7 @@ pub(super) fn with_commands(sentence: &str) -> Markup {
 pub(super) fn quoted(text: &str) -> Markup {
     let parts: Vec<&str> = text.split('`').collect();
     // An odd quote quotes nothing.
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return html! { (text) };
     }
     html! {

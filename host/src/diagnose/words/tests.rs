@@ -267,7 +267,7 @@ fn an_open_verdict_says_each_explanation_as_a_clause() {
         vec![],
         vec![vec![effect("armature", Some(1))]],
     );
-    let headline = |wrong_values| {
+    let mut headline = |wrong_values| {
         diagnosis.wrong_values = wrong_values;
         super::headline(&diagnosis)
     };
