@@ -31,7 +31,7 @@ const STARTS: [Start; 3] = [
         &[
             (
                 "handstand init a.csv -o arm.toml",
-                "a model file to start from",
+                "a model to start from",
             ),
             (
                 "handstand log check arm.toml a.csv b.csv c.csv",

@@ -7,7 +7,6 @@ fn requests_that_make_no_sense_end_in_2_and_name_a_remedy() {
     let bench = Bench::new();
     bench.put("copy.csv", bench.get("a.csv"));
     for (line, said) in [
-        ("", "Usage"),
         ("fly", "unrecognized subcommand"),
         ("effects colomb", "did you mean `coulomb`"),
         ("fit model.toml -o new.toml", "LOG"),

@@ -13,7 +13,7 @@
 //!   whole pixels, which shows as steps in flat curves, writes colours into the marks, which rules
 //!   out the dark page and hiding a curve, and clips the last label.
 //! - `plotly` needs its script of more than 3 MB in each page; a page stays below 600 kB and
-//!   holds no script.
+//!   holds no script but `report/page.js`, which zooms these drawings.
 //! - `textplots` 0.8 draws braille curves in a frame without labels, with its border over the
 //!   curve and one stroke for all curves. Frame, labels and dots would stay ours; it would
 //!   replace the 25 lines that join two dots.
