@@ -29,10 +29,7 @@ const STARTS: [Start; 3] = [
     (
         "With your own logs (CSV, MCAP, rosbag2, MAT, ..; here a.csv, b.csv, c.csv):",
         &[
-            (
-                "handstand init a.csv -o arm.toml",
-                "a model to start from",
-            ),
+            ("handstand init a.csv -o arm.toml", "a model to start from"),
             (
                 "handstand log check arm.toml a.csv b.csv c.csv",
                 "are they fit for use?",
