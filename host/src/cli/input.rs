@@ -149,6 +149,23 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length of time, s: `60s`, `2min`, or plain seconds.
+pub fn duration_s(text: &str) -> Result<f64, String> {
+    let number = text.trim_end_matches(|c: char| c.is_alphabetic());
+    let unit_s = match text[number.len()..].trim() {
+        "" | "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err("give seconds (60s), minutes (2min) or hours (1h)".to_string()),
+    };
+    let time_s = positive(number.trim())? * unit_s;
+    // A year is as good as no limit, and a clock can count it.
+    match time_s <= 3.2e7 {
+        true => Ok(time_s),
+        false => Err("give no more than a year, or leave it out".to_string()),
+    }
+}
+
 /// Two numbers, `LOW..HIGH`.
 ///
 /// # Errors

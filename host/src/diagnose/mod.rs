@@ -42,7 +42,7 @@ pub mod words;
 pub use candidates::candidates;
 pub use findings::{
     Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, Fold, MotionError,
-    ResidualStructure, RuledOut, Verdict, WrongValue,
+    ResidualStructure, RuledOut, SearchEnded, Verdict, WrongValue,
 };
 pub use inseparable::how_to_measure;
 pub use log_outcome::{LogOutcome, OutcomeFile, OutcomeKey, OutcomeValue, outcomes_in};

@@ -17,6 +17,7 @@ mod scatter;
 mod spoiled;
 #[cfg(unix)]
 mod virtual_cm5;
+mod within;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -37,6 +38,8 @@ enum Chore {
     Hidden(hidden::Args),
     /// Measure how weak an effect may be and still be named
     Detection(detection::Args),
+    /// Measure whether a limited time gives the verdict of the whole search
+    Within(within::Args),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
     Next(next::Args),
     /// Diagnose public logs of real rigs
@@ -66,6 +69,7 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Detection(args) => detection::run(args),
+            Chore::Within(args) => within::run(args),
             Chore::Next(args) => next::run(args),
             Chore::Real(args) => real::run(args),
             Chore::RobotDemo(args) => robot_demo::run(args),

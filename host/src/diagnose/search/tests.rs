@@ -1,11 +1,13 @@
 use super::*;
 use crate::challenge::{Bench, Motions, bench};
-use crate::diagnose::pipeline::Searched;
-use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use crate::fitting::{Fit, Horizon, fit_start_states, settle};
+use crate::diagnose::pipeline::{Searched, diagnose_on};
+use crate::diagnose::progress::Course;
+use crate::diagnose::{DiagnoseOptions, Diagnosis, SearchEnded, Verdict, diagnose};
+use crate::fitting::{Fit, Halt, Horizon, StopSwitch, fit_start_states, settle};
 use crate::log::{LogRequest, Motion, read};
 use crate::model::Model;
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 const REACH: Reach = Reach::Promising;
@@ -45,7 +47,12 @@ pub(in crate::diagnose) fn evaluator(seed: u64, kinds: &[&'static str]) -> Evalu
 pub(in crate::diagnose) fn evaluator_of(bench: &Bench) -> Evaluator<'static> {
     let (model, training, held_out) = recorded(bench);
     let options = DiagnoseOptions::default();
-    Evaluator::new(&model, training, held_out, &options, REACH, &|_| ())
+    Evaluator::new(&model, training, held_out, &options, REACH, silent())
+}
+
+/// A course that nobody hears of.
+pub(in crate::diagnose) fn silent() -> Course<'static> {
+    Course::new(&DiagnoseOptions::default(), &|_| ())
 }
 
 /// Without friction this arm whirls; beside viscous friction, Stribeck's at its lowest speed, which
@@ -122,10 +129,13 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
 
     assert_eq!(pair.names(), ["viscous@1", "cogging@1"]);
     assert!(!pair.evaluation.as_ref().unwrap().significant);
-    let mut sizes = [Vec::new(), vec![pair]];
-    let left = evaluator.pruned(&mut sizes, &mut Vec::new()).unwrap();
-    assert_eq!(left.names(), ["viscous@1"]);
-    let alone: Vec<_> = sizes[0].iter().map(Hypothesis::names).collect();
+    let mut found = Found {
+        sizes: vec![Vec::new(), vec![pair]],
+        ..Found::default()
+    };
+    evaluator.prune(&mut found);
+    assert_eq!(found.best.unwrap().names(), ["viscous@1"]);
+    let alone: Vec<_> = found.sizes[0].iter().map(Hypothesis::names).collect();
     assert_eq!(alone, [["cogging@1"], ["viscous@1"]]);
 }
 
@@ -173,7 +183,7 @@ fn the_search_takes_windows_that_the_model_follows() {
     let options = DiagnoseOptions::default();
     let horizon = |model: &Model, reach| {
         let all = training.clone();
-        let evaluator = Evaluator::new(model, all, Vec::new(), &options, reach, &|_| ());
+        let evaluator = Evaluator::new(model, all, Vec::new(), &options, reach, silent());
         evaluator.search_horizon
     };
     assert_eq!(horizon(&model, Reach::Everything), Horizon::Seconds(1.0));
@@ -328,7 +338,7 @@ fn a_second_search_explains_what_the_first_does_not() {
     };
     let first = {
         let (training, held_out) = (training.clone(), held_out.clone());
-        let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+        let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, silent());
         Searched::by(evaluator)
     };
     assert!(!first.is_explained());
@@ -383,7 +393,7 @@ fn a_delay_is_found_where_logs_begin_with_the_first_command() {
 fn held_out_motions_tell_places_on_one_stair_apart() {
     let (model, others, one) = arm(17, &["fold_back"]);
     let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, one, others, &options, REACH, &|_| ());
+    let evaluator = Evaluator::new(&model, one, others, &options, REACH, silent());
     let mut set = fitted(&evaluator, &["fold_back"], [&[0.4833, 0.1109, 0.303]]);
     evaluator.evaluate(&mut set);
     let mut fit = set.fit().clone();
@@ -394,4 +404,132 @@ fn held_out_motions_tell_places_on_one_stair_apart() {
     assert!(left(&fit) > 10.0, "{}", left(&fit));
     set.judge(fit, &evaluator.training, Some(others));
     assert!(left(set.fit()) < 1.1, "{}", left(set.fit()));
+}
+
+/// An arm whose law is left out of the library: candidates that cannot explain it.
+fn outside() -> (DiagnoseOptions, [Vec<Motion>; 2], Model) {
+    let (model, training, held_out) = arm(3, &["cogging"]);
+    let options = DiagnoseOptions {
+        without: all_but(&["viscous", "coulomb", "torque_offset", "stribeck"]),
+        ..DiagnoseOptions::default()
+    };
+    (options, [training, held_out], model)
+}
+
+/// What is diagnosed where the best so far is accepted at one of the runs, what was told on the
+/// way, and how many runs there were.
+fn accepted_at(at_run: usize) -> (Diagnosis, Vec<crate::fitting::Progress>, usize) {
+    let (options, motions, model) = outside();
+    let switch = options.stop.clone();
+    let halt = Halt::seen(&options.stop, move |run| {
+        if run == at_run {
+            switch.accept();
+        }
+    });
+    let told = Mutex::new(Vec::new());
+    let heard = |progress| told.lock().unwrap().push(progress);
+    let course = Course::halted_by(halt, &options, &heard);
+    let diagnosis = diagnose_on(&course, &model, motions, &options);
+    let runs = course.halt.runs();
+    (diagnosis, told.into_inner().unwrap(), runs)
+}
+
+/// The search is ended where it has looked at some sets of two.
+#[test]
+fn a_search_that_is_ended_tells_its_best_and_claims_less() {
+    let (whole, told, runs) = accepted_at(usize::MAX);
+    assert_eq!(whole.search_ended, SearchEnded::Complete);
+    assert_eq!(whole.left_out, Vec::<String>::new());
+    assert_eq!(whole.verdict, Verdict::Unexplained);
+    let falls = told.windows(2).filter(|pair| pair[1].done < pair[0].done);
+    assert_eq!(falls.count(), 0);
+    assert_eq!(told.last().unwrap().done, told.last().unwrap().total);
+    let last = told.last().unwrap().best.clone().unwrap();
+    assert!(last.error_rad < last.before_rad, "{last}");
+
+    let (cut, told, cut_runs) = accepted_at(runs / 3);
+    assert!(cut_runs < runs, "{cut_runs} {runs}");
+    assert_eq!(cut.search_ended, SearchEnded::Stopped);
+    assert_eq!(cut.left_out.last().unwrap(), "the second search");
+    assert!(cut.left_out[0].starts_with("part of"), "{:?}", cut.left_out);
+    assert_eq!(cut.verdict, Verdict::Unexplained);
+    assert!(cut.error.after_rad < cut.error.before_rad);
+    assert!(
+        cut.summary[1].starts_with("You ended the search early."),
+        "{:?}",
+        cut.summary
+    );
+    assert_eq!(told.last().unwrap().done, told.last().unwrap().total);
+    // At the first run nothing was tried: the model as it is, and no claim that it is right.
+    let (none, _, _) = accepted_at(1);
+    assert_eq!(none.verdict, Verdict::Unexplained);
+    assert!(none.effects.is_empty());
+}
+
+/// The limit is over before the search begins: what is said is said of the model as it is.
+#[test]
+fn a_limit_of_time_ends_the_search() {
+    let (options, [training, held_out], model) = outside();
+    let options = DiagnoseOptions {
+        within_s: Some(1e-3),
+        ..options
+    };
+    let diagnosis = diagnose(&model, training, held_out, &options, &|_| ());
+    assert_eq!(diagnosis.search_ended, SearchEnded::Time);
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained);
+    assert!(diagnosis.effects.is_empty());
+    assert!(diagnosis.left_out.len() > 3, "{:?}", diagnosis.left_out);
+}
+
+/// An explanation that leaves no more than the user tolerates ends the search before pairs.
+#[test]
+fn an_explanation_within_the_tolerance_ends_the_search() {
+    let found = |tolerance_rad: Option<f64>| {
+        let (options, [training, held_out], model) = outside();
+        let options = DiagnoseOptions {
+            tolerance_rad,
+            ..options
+        };
+        diagnose(&model, training, held_out, &options, &|_| ())
+    };
+    let whole = found(None);
+    assert!(whole.ruled_out.iter().any(|row| row.set.len() > 1));
+    // What one effect alone brings, and a little more.
+    let of_one = whole.ruled_out.iter().filter(|row| row.set.len() == 1);
+    let least = of_one.filter_map(|row| row.held_out_error_rad);
+    let least = least.fold(whole.error.before_rad, f64::min);
+    let tolerated = found(Some(1.05 * least));
+    assert_eq!(tolerated.search_ended, SearchEnded::Tolerance);
+    assert!(tolerated.ruled_out.iter().all(|row| row.set.len() == 1));
+    assert!(tolerated.error.after_rad <= 1.05 * least);
+    // The model as given: nothing is searched for.
+    let given = found(Some(2.0 * whole.error.before_rad));
+    assert_eq!(given.search_ended, SearchEnded::Tolerance);
+}
+
+/// Without a limit nothing depends on how many threads there are.
+#[test]
+fn a_search_says_the_same_on_one_thread_and_on_two() {
+    let said = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let (options, [training, held_out], model) = outside();
+        let diagnosed = || diagnose(&model, training, held_out, &options, &|_| ());
+        format!("{:?}", pool.build().unwrap().install(diagnosed))
+    };
+    assert_eq!(said(1), said(2));
+}
+
+/// Nothing of an abandoned diagnosis is judged.
+#[test]
+fn an_abandoned_diagnosis_unwinds() {
+    let (options, motions, model) = outside();
+    let options = DiagnoseOptions {
+        stop: StopSwitch::default(),
+        ..options
+    };
+    options.stop.abandon();
+    let course = Course::new(&options, &|_| ());
+    let diagnosed = || diagnose_on(&course, &model, motions, &options);
+    let thrown = std::panic::catch_unwind(std::panic::AssertUnwindSafe(diagnosed)).unwrap_err();
+    assert!(thrown.is::<crate::fitting::Abandoned>());
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::diagnose::Alternative;
+use crate::diagnose::{Alternative, SearchEnded};
 use crate::fitting::{ErrorReduction, FittedValue};
 use crate::model::MeasuredSignal;
 
@@ -64,6 +64,8 @@ pub(in crate::diagnose) fn said(
         horizon_s: None,
         shorter_step_s: None,
         windows: Vec::new(),
+        search_ended: SearchEnded::Complete,
+        left_out: Vec::new(),
     };
     complete(&mut diagnosis);
     diagnosis
