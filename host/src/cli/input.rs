@@ -215,3 +215,24 @@ pub fn log_set(logs: &[LogRequest], held_out: &[LogRequest]) -> LogSet {
 pub fn text(path: &Path) -> Result<String> {
     std::fs::read_to_string(path).map_err(|error| Error::file(path, "read", error))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::duration_s;
+
+    #[test]
+    fn a_length_of_time_has_a_unit_or_is_in_seconds() {
+        for (text, seconds) in [
+            ("60s", 60.0),
+            ("2min", 120.0),
+            ("1.5 h", 5400.0),
+            ("90", 90.0),
+        ] {
+            assert_eq!(duration_s(text), Ok(seconds), "{text}");
+        }
+        for refused in ["", "s", "0s", "-1", "1ms", "inf", "nan", "9999999h", "1 2"] {
+            let value = duration_s(refused);
+            assert!(value.is_err() || refused == "{refused}: {value:?}");
+        }
+    }
+}
