@@ -8,8 +8,8 @@ use super::findings::{
     Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, SearchEnded, WrongValue,
 };
 use super::hypothesis::Hypothesis;
+use super::judging::Judging;
 use super::longer_runs::longer_runs;
-use super::progress::Judging;
 use super::stability;
 use super::values::{compared, contradicted};
 use super::words;

@@ -17,6 +17,7 @@ mod horizon;
 mod hypothesis;
 mod initial_guess;
 mod inseparable;
+mod judging;
 mod log_outcome;
 mod logs;
 mod longer_runs;

@@ -1,8 +1,9 @@
 //! How far a diagnosis has come, over all that it does, and what ends it.
 
 use super::hypothesis::Hypothesis;
+use super::judging::Judging;
 use super::options::DiagnoseOptions;
-use crate::fitting::{BestSoFar, Halt, Halted, Progress, StopSwitch};
+use crate::fitting::{BestSoFar, Halt, Progress, StopSwitch};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -214,12 +215,7 @@ impl<'a> Course<'a> {
             }
             (None, false) => None,
         };
-        self.halt.ends_at(end, false);
-        Judging {
-            halt: self.halt.clone(),
-            end,
-            left_out: Vec::new(),
-        }
+        Judging::until(end, &self.halt)
     }
 }
 
@@ -267,42 +263,6 @@ impl Steps {
             },
             best: self.best.clone(),
             left_s: left.into_iter().chain(limit).reduce(f64::min),
-        }
-    }
-}
-
-/// The work after a search. What does not come to its end in time is left out, and told.
-pub(super) struct Judging {
-    halt: Halt,
-    end: Option<Duration>,
-    left_out: Vec<&'static str>,
-}
-
-impl Judging {
-    /// What was left out since the last call, in words.
-    pub fn take_left_out(&mut self) -> Vec<String> {
-        let left_out = std::mem::take(&mut self.left_out);
-        left_out.into_iter().map(str::to_string).collect()
-    }
-
-    /// A part of it, which may take this share of the time that is left.
-    pub fn part<T>(
-        &mut self,
-        what: &'static str,
-        share: f64,
-        work: impl FnOnce() -> T,
-    ) -> Option<T> {
-        if let Some(end) = self.end {
-            let now = self.halt.elapsed();
-            let own = end.saturating_sub(now).mul_f64(share);
-            self.halt.ends_at(Some(now + own), false);
-        }
-        match self.halt.until(work) {
-            Ok(done) => Some(done),
-            Err(Halted) => {
-                self.left_out.push(what);
-                None
-            }
         }
     }
 }

@@ -15,47 +15,15 @@ use super::hypothesis::Hypothesis;
 use super::initial_guess::InitialGuess;
 use super::progress::Stage;
 use super::verdict::FAR_OFF;
-use crate::fitting::{Candidate, FitOptions};
+use crate::fitting::FitOptions;
 use rayon::prelude::*;
 use std::sync::Arc;
 
+mod found;
 mod partners;
 
-/// What a search has found. It is whole at any time: where the search is ended, that is what there
-/// is.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Found {
-    /// The sets that were tried, by their size.
-    pub sizes: Vec<Vec<Hypothesis>>,
-    /// The smallest set that pays.
-    pub best: Option<Hypothesis>,
-    /// Every single value of the given model, refitted.
-    pub values: Vec<Hypothesis>,
-    /// The same along with the free values.
-    pub values_refitted: Vec<Hypothesis>,
-    /// Effects of the best set before the largest size was begun.
-    before: Option<usize>,
-    /// Sets of which each effect was taken out once.
-    taken_apart: Vec<Vec<Candidate>>,
-    /// What the search was at last; `None` where it came to its end.
-    pub at: Option<Stage>,
-    /// Whether it ended because the user tolerates what is left.
-    pub is_tolerated: bool,
-}
-
-impl Found {
-    /// What was not tried where the search was ended, in words.
-    pub fn not_tried(&self, most_effects: usize) -> Vec<String> {
-        let last = Stage::of_size(most_effects).max(Stage::Values);
-        let after = Stage::SEARCH
-            .into_iter()
-            .filter(|stage| self.at.is_some_and(|at| *stage > at) && *stage <= last);
-        let at = self.at.map(|at| format!("part of {}", at.name()));
-        at.into_iter()
-            .chain(after.map(|stage| stage.name().to_string()))
-            .collect()
-    }
-}
+pub(super) use found::Found;
+use found::put_among;
 
 impl Evaluator<'_> {
     /// Looks for the smallest set that pays, if any does, and for a wrong value; keeps in `found`
@@ -156,33 +124,6 @@ impl Evaluator<'_> {
         self.keep(found, |found| found.values = values);
         let values = self.try_values_refitted(Some(least));
         self.keep(found, |found| found.values_refitted = values);
-    }
-
-    /// Puts into `found` what came of the evaluations so far.
-    fn keep(&self, found: &mut Found, put: impl FnOnce(&mut Found)) {
-        put(found);
-        self.take_evaluated();
-    }
-
-    /// Keeps what a search had evaluated when it was ended.
-    pub fn keep_evaluated(&self, found: &mut Found) {
-        for hypothesis in self.take_evaluated() {
-            let size = hypothesis.set.len();
-            let among = match (size, hypothesis.search.free.len()) {
-                (0, 1) => &mut found.values,
-                (0, _) => &mut found.values_refitted,
-                _ => {
-                    let sizes = found.sizes.len().max(size);
-                    found.sizes.resize_with(sizes, Vec::new);
-                    &mut found.sizes[size - 1]
-                }
-            };
-            match size {
-                0 => among.push(hypothesis),
-                _ => put_among(among, vec![hypothesis]),
-            }
-        }
-        found.best = self.smallest_that_pays(&found.sizes);
     }
 
     /// Whether there is nothing left to look for beside the best set, or the base model; nothing is
@@ -391,18 +332,6 @@ fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
         .chain(best_behind.filter(|best| mean(best) < least))
 }
 
-/// Puts sets among those of their size that were tried, and in the place of the same ones that
-/// leave more.
-fn put_among(tried: &mut Vec<Hypothesis>, found: Vec<Hypothesis>) {
-    for new in found {
-        match tried.iter_mut().find(|known| known.adds(&new.set)) {
-            Some(known) if known.deciding_mean() <= new.deciding_mean() => {}
-            Some(known) => *known = new,
-            None => tried.push(new),
-        }
-    }
-}
-
 /// The one that leaves least where it counts.
 fn leader(of_size: &[Hypothesis]) -> Option<&Hypothesis> {
     let by_error =
@@ -422,5 +351,7 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
     leaders.collect::<Vec<_>>().into_iter().rev()
 }
 
+#[cfg(test)]
+mod ended_tests;
 #[cfg(test)]
 pub(super) mod tests;
