@@ -93,6 +93,8 @@ impl<'a> Searched<'a> {
     fn further(mut evaluator: Evaluator<'a>, mut found: Found) -> Self {
         let course = evaluator.course.clone();
         course.keep_time();
+        // What is ended before it begins has tried nothing.
+        found.at.get_or_insert(Stage::Alone);
         let halted = course.halt.until(|| evaluator.search(&mut found)).is_err();
         let mut left_out = Vec::new();
         if halted {

@@ -49,6 +49,18 @@ impl Stage {
         }
     }
 
+    /// All that is tried in it, for people.
+    pub fn all_of_it(self) -> &'static str {
+        match self {
+            Stage::Base => "the model as it is",
+            Stage::Alone => "the single effects",
+            Stage::Values => "the values of the model file",
+            Stage::Pairs => "the sets of two effects",
+            Stage::Larger => "the sets of three effects",
+            Stage::Judging => "the judging",
+        }
+    }
+
     /// Share of a search that explains nothing, in thousandths of both searches and the judging:
     /// measured on arms whose law is outside the library.
     fn weight(self, again: bool) -> usize {

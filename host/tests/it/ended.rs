@@ -17,7 +17,7 @@ fn a_limit_of_time_is_in_the_answer() {
     assert_eq!(said["verdict"], "unexplained");
     let summary = said["summary"][1].as_str().unwrap();
     assert!(summary.contains("at its limit of time"), "{summary}");
-    assert_eq!(said["left_out"][0], "part of every effect alone");
+    assert_eq!(said["left_out"][0], "part of the single effects");
 
     let whole = bench.run("diagnose model.toml a.csv --holdout b.csv --within 1h --json");
     assert_eq!(whole.json()["search_ended"], "complete");

@@ -34,9 +34,9 @@ impl Found {
         let after = Stage::SEARCH
             .into_iter()
             .filter(|stage| self.at.is_some_and(|at| *stage > at) && *stage <= last);
-        let at = self.at.map(|at| format!("part of {}", at.name()));
+        let at = self.at.map(|at| format!("part of {}", at.all_of_it()));
         at.into_iter()
-            .chain(after.map(|stage| stage.name().to_string()))
+            .chain(after.map(|stage| stage.all_of_it().to_string()))
             .collect()
     }
 }
