@@ -159,7 +159,7 @@ struct Lines {
 }
 
 /// Work that takes no longer tells nothing, s; then a line is due every so often, s.
-const FIRST_LINE_S: f64 = 10.0;
+const FIRST_LINE_S: f64 = 20.0;
 const LINE_S: f64 = 30.0;
 
 impl Default for Lines {
@@ -231,9 +231,9 @@ mod tests {
     #[test]
     fn a_line_is_due_now_and_then() {
         let lines = Lines::default();
-        let due = [1.0, 9.9, 10.0, 11.0, 39.0, 41.0, 60.0, 71.5];
+        let due = [1.0, 19.9, 20.0, 21.0, 49.0, 51.0, 70.0, 81.5];
         let due: Vec<f64> = due.into_iter().filter(|s| lines.is_due_after(*s)).collect();
-        assert_eq!(due, [10.0, 41.0, 71.5]);
+        assert_eq!(due, [20.0, 51.0, 81.5]);
     }
 
     #[test]
