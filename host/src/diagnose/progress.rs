@@ -220,13 +220,13 @@ impl<'a> Course<'a> {
     /// The judging begins: when it has to be done, where the search was ended or has a limit.
     pub fn judging(&self, was_ended: bool) -> Judging {
         let elapsed = self.halt.elapsed();
-        let end = match (self.within, was_ended) {
-            (Some(within), _) => Some(within.saturating_sub(Duration::from_secs_f64(SAYING_S))),
-            (None, true) => {
-                Some(elapsed + Duration::from_secs_f64(JUDGING_S) + elapsed.mul_f64(JUDGING_SHARE))
-            }
-            (None, false) => None,
-        };
+        let within = self
+            .within
+            .map(|within| within.saturating_sub(Duration::from_secs_f64(SAYING_S)));
+        let waits = was_ended && (self.within.is_none() || self.is_accepted());
+        let waiting = waits
+            .then(|| elapsed + Duration::from_secs_f64(JUDGING_S) + elapsed.mul_f64(JUDGING_SHARE));
+        let end = within.into_iter().chain(waiting).min();
         Judging::until(end, &self.halt)
     }
 }

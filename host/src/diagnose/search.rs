@@ -30,15 +30,22 @@ impl Evaluator<'_> {
     /// what it has, and goes on from there.
     pub fn search(&mut self, found: &mut Found) {
         if found.sizes.is_empty() {
+            let known = [&self.given, &self.base];
+            let is_tolerated = known.into_iter().any(|known| self.is_tolerated(known));
+            if is_tolerated && !self.at_noise_floor(&self.base) {
+                (found.is_tolerated, found.at) = (true, None);
+                return;
+            }
             self.begin(found);
         }
         for size in 2..=self.most_effects {
             if found.sizes.len() < size {
-                if self.is_done(found) || !self.go_to(size, found) {
-                    break;
+                let goes_on = !self.is_done(found) && self.go_to(size, found);
+                if size == 2 {
+                    self.fork_from(found);
                 }
-                if size == 2 && self.reach == Reach::Promising && self.follows_first {
-                    self.fork = Some(Box::new((self.for_everything(), found.clone())));
+                if !goes_on {
+                    break;
                 }
             } else {
                 self.begin_size(size, found);
@@ -56,6 +63,16 @@ impl Evaluator<'_> {
             }
         }
         found.at = None;
+    }
+
+    /// Keeps where a search of everything would part from this one, if it would begin as this one
+    /// did: all that was found until then it would find again.
+    fn fork_from(&mut self, found: &Found) {
+        let best = found.best.as_ref();
+        let is_explained = best.is_some_and(|best| self.is_explained_by(best));
+        if self.reach == Reach::Promising && self.follows_first && !is_explained {
+            self.fork = Some(Box::new((self.for_everything(), found.clone())));
+        }
     }
 
     /// Tries every effect alone, then every value.
