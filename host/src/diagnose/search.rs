@@ -11,6 +11,7 @@ use super::budget::{
     VALUE_STEPS, larger_steps, singles_steps,
 };
 use super::evaluator::{Evaluator, Reach, every_change};
+use super::explanation::Tried;
 use super::hypothesis::Hypothesis;
 use super::initial_guess::InitialGuess;
 use super::progress::Stage;
@@ -151,15 +152,19 @@ impl Evaluator<'_> {
             (Some(best), Reach::Everything) => self.is_explained_by(best),
             (best, _) => self.at_noise_floor(best.unwrap_or(&self.base)),
         };
-        let values = found.values.iter().chain(&found.values_refitted);
-        let mut all = [&self.given, &self.base]
-            .into_iter()
-            .chain(best)
-            .chain(values);
-        found.is_tolerated = !is_explained && all.any(|hypothesis| self.is_tolerated(hypothesis));
+        found.is_tolerated = !is_explained && self.tolerance_rad.is_some() && {
+            let tried = Tried {
+                values: found.values.clone(),
+                values_refitted: found.values_refitted.clone(),
+                best: found.best.clone(),
+                hypotheses: Vec::new(),
+            };
+            self.is_tolerated(tried.explanation(self).hypothesis())
+        };
         is_explained || found.is_tolerated
     }
 
+    /// Whether the user asks for no less error.
     fn is_tolerated(&self, hypothesis: &Hypothesis) -> bool {
         self.tolerance_rad
             .is_some_and(|tolerance| hypothesis.deciding_rms_rad() <= tolerance)
