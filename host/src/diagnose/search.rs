@@ -31,9 +31,7 @@ impl Evaluator<'_> {
     /// what it has, and goes on from there.
     pub fn search(&mut self, found: &mut Found) {
         if found.sizes.is_empty() {
-            let known = [&self.given, &self.base];
-            let is_tolerated = known.into_iter().any(|known| self.is_tolerated(known));
-            if is_tolerated && !self.at_noise_floor(&self.base) {
+            if self.leaves_tolerated(found) && !self.at_noise_floor(&self.base) {
                 (found.is_tolerated, found.at) = (true, None);
                 return;
             }
@@ -152,22 +150,22 @@ impl Evaluator<'_> {
             (Some(best), Reach::Everything) => self.is_explained_by(best),
             (best, _) => self.at_noise_floor(best.unwrap_or(&self.base)),
         };
-        found.is_tolerated = !is_explained && self.tolerance_rad.is_some() && {
+        found.is_tolerated = !is_explained && self.leaves_tolerated(found);
+        is_explained || found.is_tolerated
+    }
+
+    /// Whether the user asks for no less error than the explanation leaves that was found.
+    fn leaves_tolerated(&self, found: &Found) -> bool {
+        self.tolerance_rad.is_some_and(|tolerance_rad| {
             let tried = Tried {
                 values: found.values.clone(),
                 values_refitted: found.values_refitted.clone(),
                 best: found.best.clone(),
                 hypotheses: Vec::new(),
             };
-            self.is_tolerated(tried.explanation(self).hypothesis())
-        };
-        is_explained || found.is_tolerated
-    }
-
-    /// Whether the user asks for no less error.
-    fn is_tolerated(&self, hypothesis: &Hypothesis) -> bool {
-        self.tolerance_rad
-            .is_some_and(|tolerance| hypothesis.deciding_rms_rad() <= tolerance)
+            let explanation = tried.explanation(self).hypothesis();
+            explanation.deciding_rms_rad() <= tolerance_rad
+        })
     }
 
     /// Whether a set leaves nothing but noise, over the horizon that counts and in the windows it
