@@ -66,6 +66,10 @@ pub fn diagnose(
     };
     let logs = learned_and_held_out(logs, hold_out, &model)?;
     let found = work::run(py, progress, move |report| {
+        let options = DiagnoseOptions {
+            stop: report.stop_switch().clone(),
+            ..options
+        };
         found(model, logs, &options, &|progress| report.tell(progress))
     })?;
     found.map_err(exception)

@@ -53,7 +53,8 @@ fn a_search_that_is_ended_tells_its_best_and_claims_less() {
     let (cut, told, cut_runs) = accepted_at(runs / 3);
     assert!(cut_runs < runs, "{cut_runs} {runs}");
     assert_eq!(cut.search_ended, SearchEnded::Stopped);
-    assert_eq!(cut.left_out.last().unwrap(), "the second search");
+    let is_second = |left_out: &String| left_out.ends_with("the second search");
+    assert!(cut.left_out.iter().any(is_second), "{:?}", cut.left_out);
     assert!(cut.left_out[0].starts_with("part of"), "{:?}", cut.left_out);
     assert_eq!(cut.verdict, Verdict::Unexplained);
     assert!(cut.error.after_rad < cut.error.before_rad);
