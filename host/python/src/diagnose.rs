@@ -25,11 +25,12 @@ pub struct Diagnosis {
 /// Diagnoses what a model lacks. Files are first checked for wrong signs, zeros, units and drives
 /// (`trust_log=True` leaves that out). Without `hold_out` the last third of the motions judges.
 /// `known` names values that were measured by themselves, `without` effects to leave out;
-/// `progress(what, done, total)` is called while it works.
+/// `within_s` are the seconds that it may take. `progress(what, done, total)` is called while it
+/// works.
 #[pyfunction]
 #[pyo3(signature = (model, logs, *, hold_out=None, without=Vec::new(), known=Vec::new(),
                     seed=None, tolerance_rad=None, horizon_s=None, trust_log=false,
-                    progress=None))]
+                    within_s=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub fn diagnose(
     py: Python<'_>,
@@ -42,6 +43,7 @@ pub fn diagnose(
     tolerance_rad: Option<f64>,
     horizon_s: Option<&Bound<'_, PyAny>>,
     trust_log: bool,
+    within_s: Option<f64>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Diagnosis> {
     let model = model.get().clone();
@@ -56,13 +58,29 @@ pub fn diagnose(
         horizon: horizon(horizon_s)?,
         tolerance_rad,
         trust_log,
+        within_s: within_s.map(seconds).transpose().map_err(exception)?,
         ..defaults
     };
     let logs = learned_and_held_out(logs, hold_out, &model)?;
     let found = work::run(py, progress, move |report| {
+        let options = DiagnoseOptions {
+            stop: report.stop_switch().clone(),
+            ..options
+        };
         found(model, logs, &options, &|progress| report.tell(progress))
     })?;
     found.map_err(exception)
+}
+
+/// A limit of time, s.
+fn seconds(within_s: f64) -> handstand::Result<f64> {
+    match within_s > 0.0 && within_s <= 3.2e7 {
+        true => Ok(within_s),
+        false => Err(handstand::Error::usage(
+            format!("within_s = {within_s} is no time"),
+            "give seconds above 0, or leave it out",
+        )),
+    }
 }
 
 fn found(

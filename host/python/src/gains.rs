@@ -102,6 +102,8 @@ fn designed(
             done: done.get(),
             total,
             what: "simulations of the loop".into(),
+            best: None,
+            left_s: None,
         });
     };
     let verification = verify(model, &design, request, &left_out, &tell)?;

@@ -1,46 +1,46 @@
 //! Work on a thread of its own, so that Python goes on: progress is told, Ctrl-C ends it.
 
 use crate::errors::HandstandError;
-use handstand::fitting::Progress;
+use handstand::fitting::{Abandoned, Progress, StopSwitch};
 use pyo3::prelude::*;
 use std::panic::resume_unwind;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 /// How long the interpreter waits before it looks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// What unwinds work that is to stop.
-struct Stopped;
-
 /// Tells how far the work is, and ends it where that was asked.
 pub struct WorkReport {
     steps: Sender<Progress>,
-    stop: Arc<AtomicBool>,
+    stop: StopSwitch,
 }
 
 impl WorkReport {
     /// Tells. Where the work is to stop it does not return: it unwinds to the end of its thread.
     pub fn tell(&self, progress: Progress) {
-        if self.stop.load(Ordering::Relaxed) {
-            resume_unwind(Box::new(Stopped));
+        if self.stop.is_abandoned() {
+            resume_unwind(Box::new(Abandoned));
         }
         // Who no longer listens has stopped the work.
         let _ = self.steps.send(progress);
     }
+
+    /// What ends work that looks at it.
+    pub fn stop_switch(&self) -> &StopSwitch {
+        &self.stop
+    }
 }
 
 /// Runs `work` without the interpreter's lock. `progress(what, done, total)` is called from this
-/// thread. After Ctrl-C the work ends where it next tells how far it is.
+/// thread. After Ctrl-C the work ends where it next tells how far it is, or looks at the switch.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&WorkReport) -> T + Send + 'static,
 ) -> PyResult<T> {
     let (steps, told) = channel();
-    let stop = Arc::new(AtomicBool::new(false));
+    let stop = StopSwitch::default();
     let report = WorkReport {
         steps,
         stop: stop.clone(),
@@ -51,7 +51,7 @@ pub fn run<T: Send + 'static>(
     });
     let watched = watch(py, progress, told);
     if watched.is_err() {
-        stop.store(true, Ordering::Relaxed);
+        stop.abandon();
     }
     watched?;
     match py.detach(|| thread.join()) {

@@ -13,6 +13,9 @@
 //! With the plan of a balancing robot (`--plan GAINS.json`, from `handstand gains --state-space`)
 //! the closed loop is simulated too, of the model as it is and with the effects that were found.
 //!
+//! `--within 60s` ends the search in time for an answer after a minute, Ctrl-C at once: the best so
+//! far is judged, and what was left out is said. A second Ctrl-C leaves.
+//!
 //! `--each FOLDER -o RESULT` diagnoses every log of a folder by itself, in shards if need be
 //! (`--shard 2/8`): a line of JSON per log, then a table (`logs.csv`) and a page (`logs.html`).
 //!
@@ -22,19 +25,21 @@
 
 mod each;
 
+use super::interrupt::Interrupt;
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use each::EachArgs;
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare_all};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, LogDiagnosis, Verdict, diagnose_logs};
-use handstand::fitting::{Horizon, effect_ids};
+use handstand::fitting::{Horizon, Progress, effect_ids};
 use handstand::log::{LogRequest, LogSet, Motion, read};
 use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Diagnose which physical effect a model lacks, from logs.
 #[derive(Debug, clap::Args)]
@@ -53,9 +58,13 @@ pub struct DiagnoseArgs {
     /// Seed of the random draws
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Error that is good enough, mrad: a model as given that leaves no more is `adequate`
+    /// Error that is good enough, mrad: an explanation that leaves no more ends the search, a
+    /// model as given that does is `adequate`
     #[arg(long, value_name = "MRAD", value_parser = input::positive)]
     tolerance: Option<f64>,
+    /// Time that it may take, log check and judging included: `60s`, `2min`
+    #[arg(long, value_name = "TIME", value_parser = input::duration_s)]
+    within: Option<f64>,
     /// Diagnose even where another sign, zero, unit or drive in the model file clearly lowers the
     /// error
     #[arg(long)]
@@ -120,6 +129,7 @@ fn options(model: &Model, args: &DiagnoseArgs) -> Result<DiagnoseOptions> {
         horizon: args.judging.run.horizon,
         trust_log: args.trust_log,
         tolerance_rad: args.tolerance.map(|mrad| 1e-3 * mrad),
+        within_s: args.within,
         ..defaults
     })
 }
@@ -132,7 +142,25 @@ fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnos
         path: &args.model,
         text: &text,
     };
-    diagnose_logs(model, file, &logs, &options, &talk.progress())
+    let interrupt = Interrupt::accepting(&options.stop);
+    let shown = talk.progress();
+    let told = AtomicBool::new(false);
+    let heard = |progress: Progress| {
+        if interrupt.has_come() && !told.swap(true, Ordering::Relaxed) {
+            talk.say(&stopping(&progress));
+        }
+        shown(progress);
+    };
+    diagnose_logs(model, file, &logs, &options, &heard)
+}
+
+/// That the best so far is judged, and what it is: a second Ctrl-C leaves no more than this line.
+fn stopping(progress: &Progress) -> String {
+    let best = progress.best.as_ref();
+    let best = best.map_or("nothing is found yet".to_string(), |best| {
+        format!("best so far {best}")
+    });
+    format!("Ctrl-C: judging what was found ({best}); once more to leave at once")
 }
 
 /// Prints the diagnosis, and the closed loops before and after it where there are any.

@@ -149,6 +149,23 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length of time, s: `60s`, `2min`, or plain seconds.
+pub fn duration_s(text: &str) -> Result<f64, String> {
+    let number = text.trim_end_matches(|c: char| c.is_alphabetic());
+    let unit_s = match text[number.len()..].trim() {
+        "" | "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err("give seconds (60s), minutes (2min) or hours (1h)".to_string()),
+    };
+    let time_s = positive(number.trim())? * unit_s;
+    // A year is as good as no limit, and a clock can count it.
+    match time_s <= 3.2e7 {
+        true => Ok(time_s),
+        false => Err("give no more than a year, or leave it out".to_string()),
+    }
+}
+
 /// Two numbers, `LOW..HIGH`.
 ///
 /// # Errors
@@ -197,4 +214,25 @@ pub fn log_set(logs: &[LogRequest], held_out: &[LogRequest]) -> LogSet {
 /// [`Error::File`] if the system refuses.
 pub fn text(path: &Path) -> Result<String> {
     std::fs::read_to_string(path).map_err(|error| Error::file(path, "read", error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::duration_s;
+
+    #[test]
+    fn a_length_of_time_has_a_unit_or_is_in_seconds() {
+        for (text, seconds) in [
+            ("60s", 60.0),
+            ("2min", 120.0),
+            ("1.5 h", 5400.0),
+            ("90", 90.0),
+        ] {
+            assert_eq!(duration_s(text), Ok(seconds), "{text}");
+        }
+        for refused in ["", "s", "0s", "-1", "1ms", "inf", "nan", "9999999h", "1 2"] {
+            let value = duration_s(refused);
+            assert!(value.is_err() || refused == "{refused}: {value:?}");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 //! second one ends the program at once; if servos may hold torque by then, the last thing on the
 //! line is that they let go.
 
+use handstand::fitting::StopSwitch;
 use handstand::link::record::EmergencyOff;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -10,6 +11,7 @@ use std::sync::{Arc, Mutex};
 #[derive(Clone, Default)]
 pub struct Interrupt {
     come: Arc<AtomicBool>,
+    accepts: StopSwitch,
     emergency_off: Arc<Mutex<Option<EmergencyOff>>>,
 }
 
@@ -17,6 +19,17 @@ impl Interrupt {
     /// From now on.
     pub fn listen() -> Self {
         let interrupt = Interrupt::default();
+        #[cfg(unix)]
+        interrupt.clone().wait();
+        interrupt
+    }
+
+    /// From now on; the first one accepts what work has found by then.
+    pub fn accepting(switch: &StopSwitch) -> Self {
+        let interrupt = Interrupt {
+            accepts: switch.clone(),
+            ..Interrupt::default()
+        };
         #[cfg(unix)]
         interrupt.clone().wait();
         interrupt
@@ -47,6 +60,7 @@ impl Interrupt {
                 if self.come.swap(true, Ordering::Relaxed) {
                     self.end();
                 }
+                self.accepts.accept();
             }
         });
     }

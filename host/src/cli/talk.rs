@@ -1,12 +1,15 @@
-//! Console output: data to stdout, messages to stderr, progress only to a terminal.
+//! Console output: data to stdout, messages to stderr; progress as a bar on a terminal, elsewhere
+//! as a line now and then.
 
 use handstand::fitting::Progress;
 use handstand::output::write_new;
 use handstand::{Error, Result};
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use serde::Serialize;
-use std::io::{ErrorKind, Write as _};
+use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 /// Where the output of one run goes, and in which form.
 #[derive(Debug, Clone)]
@@ -113,10 +116,20 @@ impl Talk {
             .with_finish(ProgressFinish::AndClear)
     }
 
-    /// A bar that shows how far a fit or a diagnosis has come, and what hears that.
+    /// A bar that shows how far a fit or a diagnosis has come, and what hears that. Where there is
+    /// no terminal, a line now and then.
     pub fn progress(&self) -> impl Fn(Progress) + Sync {
         let bar = self.bar(0);
-        move |progress| show(&bar, progress)
+        let lines = (!self.quiet && !std::io::stderr().is_terminal()).then(Lines::default);
+        let talk = self.clone();
+        move |progress| match &lines {
+            Some(lines) => {
+                if lines.is_due() {
+                    talk.say(&progress_line(&progress));
+                }
+            }
+            None => show(&bar, progress),
+        }
     }
 
     /// A place for lines that are written over again and again; shows only on a terminal, and no
@@ -138,9 +151,116 @@ impl Talk {
     }
 }
 
+/// When lines are due that tell how far work has come.
+struct Lines {
+    begun: Instant,
+    /// How long after it began the last one was written, s.
+    last_s: Mutex<f64>,
+}
+
+/// Work that takes no longer tells nothing, s; then a line is due every so often, s.
+const FIRST_LINE_S: f64 = 20.0;
+const LINE_S: f64 = 30.0;
+
+impl Default for Lines {
+    fn default() -> Self {
+        Lines {
+            begun: Instant::now(),
+            last_s: Mutex::new(FIRST_LINE_S - LINE_S),
+        }
+    }
+}
+
+impl Lines {
+    fn is_due(&self) -> bool {
+        self.is_due_after(self.begun.elapsed().as_secs_f64())
+    }
+
+    fn is_due_after(&self, elapsed_s: f64) -> bool {
+        let mut last_s = self.last_s.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due = elapsed_s >= *last_s + LINE_S;
+        if is_due {
+            *last_s = elapsed_s;
+        }
+        is_due
+    }
+}
+
 /// Lets a bar show how far a fit or a diagnosis has come.
 pub fn show(bar: &ProgressBar, progress: Progress) {
     bar.set_length(progress.total as u64);
     bar.set_position(progress.done as u64);
-    bar.set_message(progress.what);
+    let words = [
+        Some(progress.what.to_string()),
+        best(&progress),
+        left(&progress),
+    ];
+    let words: Vec<String> = words.into_iter().flatten().collect();
+    bar.set_message(words.join(", "));
+}
+
+/// "34 %: sets of two effects, best so far ..., at most 6 min left".
+fn progress_line(progress: &Progress) -> String {
+    let percent = 100 * progress.done / progress.total.max(1);
+    let words = [
+        Some(progress.what.to_string()),
+        best(progress),
+        left(progress),
+    ];
+    let words: Vec<String> = words.into_iter().flatten().collect();
+    format!("{percent} %: {}", words.join(", "))
+}
+
+fn best(progress: &Progress) -> Option<String> {
+    let best = progress.best.as_ref();
+    best.map(|best| format!("best so far {best}"))
+}
+
+fn left(progress: &Progress) -> Option<String> {
+    progress.left_s.map(|left_s| match left_s < 100.0 {
+        true => format!("at most {left_s:.0} s left"),
+        false => format!("at most {:.0} min left", (left_s / 60.0).ceil()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use handstand::fitting::BestSoFar;
+
+    #[test]
+    fn a_line_is_due_now_and_then() {
+        let lines = Lines::default();
+        let due = [1.0, 19.9, 20.0, 21.0, 49.0, 51.0, 70.0, 81.5];
+        let due: Vec<f64> = due.into_iter().filter(|s| lines.is_due_after(*s)).collect();
+        assert_eq!(due, [20.0, 51.0, 81.5]);
+    }
+
+    #[test]
+    fn a_line_tells_how_far_work_is_what_it_has_and_what_is_left() {
+        let begun = Progress {
+            done: 34,
+            total: 1000,
+            what: "every effect alone".into(),
+            best: None,
+            left_s: None,
+        };
+        assert_eq!(progress_line(&begun), "3 %: every effect alone");
+        let later = Progress {
+            done: 340,
+            best: Some(BestSoFar {
+                names: vec!["coulomb@1".into(), "delay@1".into()],
+                before_rad: 0.0412,
+                error_rad: 0.00321,
+                floor_rad: 0.0015,
+            }),
+            left_s: Some(301.0),
+            ..begun
+        };
+        assert_eq!(
+            progress_line(&later),
+            "34 %: every effect alone, best so far coulomb@1 + delay@1: 3.21 of 41.2 mrad, floor \
+             1.50, at most 6 min left"
+        );
+    }
 }

@@ -36,19 +36,23 @@ pub(super) const EVALUATION_STEPS: usize = 2;
 /// The base model, likewise.
 pub(super) const BASE_STEPS: usize = 5;
 /// A candidate's glance and look.
-const FIRST_LOOK_STEPS: usize = 2;
+pub(super) const FIRST_LOOK_STEPS: usize = 2;
+/// The values of the model file: glances and the finals.
+pub(super) const VALUE_STEPS: usize = 2 * FINALISTS * EVALUATION_STEPS;
 /// The finals of one size.
 const FINALS_STEPS: usize = SECOND_LOOKS + FINALISTS * (1 + EVALUATION_STEPS);
-/// The placebos and the residual structure.
-pub(super) const STRUCTURE_STEPS: usize = 15;
+/// Taking the best of every size apart.
+const PRUNING_STEPS: usize = 5 * EVALUATION_STEPS;
 
-/// Steps until sets of `size` are done.
-pub(super) fn steps_up_to(size: usize, candidates: usize) -> usize {
-    let larger = (BEAM + 1) * PARTNERS + 2 * FINALS_STEPS;
-    BASE_STEPS + FIRST_LOOK_STEPS * candidates + FINALS_STEPS + (size.max(1) - 1) * larger
+/// Steps of sets of one effect.
+pub(super) fn singles_steps(candidates: usize) -> usize {
+    FIRST_LOOK_STEPS * candidates + FINALS_STEPS
 }
 
-/// Steps of a diagnosis with so many candidates, when it does not end early.
-pub(super) fn planned_steps(candidates: usize, most_effects: usize) -> usize {
-    steps_up_to(most_effects, candidates) + STRUCTURE_STEPS
+/// Steps of the sets of a size: partners of the beam, then `beside` more looks around the leading
+/// sets, each with finals and swaps.
+pub(super) fn larger_steps(beside: usize) -> usize {
+    (BEAM + 1) * PARTNERS + beside + 4 * FINALS_STEPS + PRUNING_STEPS
 }
+/// Steps of the judging: its parts.
+pub(super) const JUDGING_STEPS: usize = 8;

@@ -4,25 +4,39 @@ use super::block_errors::{BlockErrors, gain, paired, reduction};
 use super::error_budget::error_budget;
 use super::evaluator::Evaluator;
 use super::explanation::{Explanation, VerdictEvidence};
-use super::findings::{Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, WrongValue};
+use super::findings::{
+    Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, SearchEnded, WrongValue,
+};
 use super::hypothesis::Hypothesis;
+use super::judging::Judging;
 use super::longer_runs::longer_runs;
 use super::relative_scale;
 use super::stability;
 use super::values::{compared, contradicted};
 use super::words;
-use crate::fitting::{ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values};
+use crate::fitting::{
+    ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values, locally_fitted_values,
+};
 use crate::model::MeasuredSignal;
 use crate::output::number::{percent, short};
 
 /// Correlation from which two values are hardly told apart.
 const COLLINEAR: f64 = 0.95;
+/// What is left out where intervals are taken from the derivatives alone.
+const INTERVALS: &str = "intervals beyond the derivatives";
 
 /// Draws the conclusion.
-pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
+pub(super) fn conclude(evidence: &VerdictEvidence, judging: &mut Judging) -> Diagnosis {
     let rivals = evidence.rivals();
     let (chosen, evaluator) = (evidence.chosen(), evidence.evaluator);
-    let (values, correlation) = fitted_values(chosen.fit(), &evaluator.training);
+    let (values, correlation) = judging
+        .part(INTERVALS, 0.5, || {
+            fitted_values(chosen.fit(), &evaluator.training)
+        })
+        .unwrap_or_else(|| locally_fitted_values(chosen.fit(), &evaluator.training));
+    let alternatives = rivals.iter().map(|h| alternative(h, evidence, judging));
+    let alternatives: Vec<Alternative> = alternatives.collect();
+    let budget = judging.part("the error budget", 0.7, || error_budget(evidence));
     let step_s = chosen.fit().model.step_s;
     let (base, added) = values.split_at(values.len() - chosen.added_values());
     let mut collinear = Vec::new();
@@ -39,8 +53,8 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
         effects: effects(chosen, added),
         wrong_values: wrong_values(evidence, base),
         error: error(evidence),
-        budget: error_budget(evidence),
-        alternatives: rivals.iter().map(|h| alternative(h, evidence)).collect(),
+        budget: budget.unwrap_or_default(),
+        alternatives,
         base: base.to_vec(),
         ruled_out: ruled_out(evidence, &rivals),
         residual_structure: evidence.residual_structure.clone(),
@@ -49,19 +63,48 @@ pub(super) fn conclude(evidence: &VerdictEvidence) -> Diagnosis {
         collinear,
         summary: Vec::new(),
         next: Vec::new(),
-        warnings: warnings(evidence, correlation.is_some()),
+        warnings: warnings(evidence, correlation.is_some(), judging),
         search_horizon_s: evaluator.search_horizon.seconds(),
         horizon_s: evaluator.horizon.seconds(),
         shorter_step_s: (step_s < evaluator.file_step_s).then_some(step_s),
         windows: windows(evaluator),
+        search_ended: evidence.ended,
+        left_out: evidence.left_out.clone(),
     };
     let scale = relative_scale::warning(&diagnosis, &evaluator.start, &evaluator.known);
     diagnosis.warnings.extend(scale);
+    diagnosis.left_out.extend(judging.take_left_out());
     words::complete(&mut diagnosis);
     // What decides is said at once.
     let at = diagnosis.summary.len().min(1);
-    diagnosis.summary.splice(at..at, values_vary(evidence));
+    let decides = values_vary(evidence).into_iter().chain(ended(&diagnosis));
     diagnosis
+        .summary
+        .splice(at..at, decides.collect::<Vec<_>>());
+    diagnosis
+}
+
+/// That the search ended early, and what was left out.
+fn ended(diagnosis: &Diagnosis) -> Option<String> {
+    let why = match diagnosis.search_ended {
+        SearchEnded::Tolerance => {
+            return Some(
+                "The search ended there: what is left is no more than the tolerance.".to_string(),
+            );
+        }
+        SearchEnded::Stopped => "You ended the search early",
+        SearchEnded::Time => "The search ended early, at its limit of time",
+        SearchEnded::Complete if diagnosis.left_out.is_empty() => return None,
+        SearchEnded::Complete => "The time was over before all was judged",
+    };
+    let left_out = match diagnosis.left_out.is_empty() {
+        true => String::new(),
+        false => format!(
+            ". Not examined: {}. A longer search may say otherwise",
+            diagnosis.left_out.join(", ")
+        ),
+    };
+    Some(format!("{why}{left_out}."))
 }
 
 /// That the motions ask for other values each, where they do.
@@ -111,7 +154,7 @@ fn windows(evaluator: &Evaluator) -> Vec<MotionWindow> {
         .collect()
 }
 
-fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
+fn warnings(evidence: &VerdictEvidence, determined: bool, judging: &mut Judging) -> Vec<String> {
     let mut warnings = Vec::new();
     if !determined {
         warnings.push(
@@ -126,7 +169,8 @@ fn warnings(evidence: &VerdictEvidence, determined: bool) -> Vec<String> {
         );
     }
     warnings.extend(stability::warning(&evidence.folds));
-    warnings.extend(longer_runs(evidence));
+    let longer = judging.part("long runs", 1.0, || longer_runs(evidence));
+    warnings.extend(longer.flatten());
     warnings.extend(evidence.evaluator.start.log.notes());
     warnings
 }
@@ -147,9 +191,15 @@ fn effects(hypothesis: &Hypothesis, mut values: &[FittedValue]) -> Vec<FittedEff
     hypothesis.set.iter().map(effect).collect()
 }
 
-fn alternative(hypothesis: &Hypothesis, evidence: &VerdictEvidence) -> Alternative {
-    let evaluator = evidence.evaluator;
-    let (values, _) = fitted_values(hypothesis.fit(), &evaluator.training);
+fn alternative(
+    hypothesis: &Hypothesis,
+    evidence: &VerdictEvidence,
+    judging: &mut Judging,
+) -> Alternative {
+    let (evaluator, fit) = (evidence.evaluator, hypothesis.fit());
+    let (values, _) = judging
+        .part(INTERVALS, 0.3, || fitted_values(fit, &evaluator.training))
+        .unwrap_or_else(|| locally_fitted_values(fit, &evaluator.training));
     let added = values.len() - hypothesis.added_values();
     let own: Vec<FittedValue> = values[..added]
         .iter()

@@ -1,23 +1,25 @@
 //! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
 //! evaluation, the base model fitted, the candidates.
 
-use super::budget::{EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, HOPELESS, LOOK, planned_steps};
+use super::budget::{BASE_STEPS, EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, HOPELESS, LOOK};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
 use super::hypothesis::{Evaluation, Hypothesis};
 use super::measured_value::is_ruled_out;
 use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
-use super::progress::StepCounter;
+use super::progress::{Course, Stage};
 use super::residual_structure::residual_structure;
+use super::search::Found;
 use super::values::as_given;
 use crate::fitting::{
-    Candidate, Fit, FitData, FitOptions, Horizon, PredictionChange, Progress, Sizes, changes,
-    coarsened, is_followed, search_horizons,
+    Candidate, Fit, FitData, FitOptions, Horizon, PredictionChange, Sizes, changes, coarsened,
+    is_followed, search_horizons,
 };
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// How far a search reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +49,7 @@ pub(super) struct Evaluator<'a> {
     pub search_horizon: Horizon,
     pub candidates: Vec<Candidate>,
     /// What each start of each candidate changes in the base model's prediction.
-    pub changes: Vec<Vec<PredictionChange>>,
+    pub changes: Arc<Vec<Vec<PredictionChange>>>,
     /// The model as it came, in the steps that it is searched with.
     pub start: Model,
     /// Integration step of its file, s.
@@ -60,7 +62,20 @@ pub(super) struct Evaluator<'a> {
     /// Most effects named together.
     pub most_effects: usize,
     pub reach: Reach,
-    pub steps: StepCounter<'a>,
+    /// Whether a search of everything would begin with the same windows.
+    pub follows_first: bool,
+    pub course: Course<'a>,
+    /// Where a search of everything parts from this one.
+    pub fork: Option<Box<(Evaluator<'a>, Found)>>,
+    /// What was evaluated since the search last kept what it found, and the best of all.
+    evaluated: Mutex<Evaluated>,
+}
+
+/// What was evaluated in a search.
+#[derive(Default)]
+struct Evaluated {
+    lately: Vec<Hypothesis>,
+    best: Option<Hypothesis>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -70,7 +85,7 @@ impl<'a> Evaluator<'a> {
         held_out: Vec<Motion>,
         options: &DiagnoseOptions,
         reach: Reach,
-        progress: &'a (dyn Fn(Progress) + Sync),
+        course: Course<'a>,
     ) -> Evaluator<'a> {
         let all = [training.as_slice(), held_out.as_slice()].concat();
         let mut candidates = candidates(model, &all, &options.without);
@@ -80,23 +95,25 @@ impl<'a> Evaluator<'a> {
             true => 1,
             false => options.most_effects,
         };
-        let planned = planned_steps(candidates.len(), most_effects);
-        let steps = StepCounter::new(planned, reach == Reach::Everything, progress);
-        let whole = FitData::new(model, training, Horizon::Whole);
+        course.begin(Stage::Base, reach == Reach::Everything, BASE_STEPS);
+        let whole = FitData::new(model, training, Horizon::Whole).halted_by(&course.halt);
         let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
         let file_step_s = model.step_s;
         let mut horizons = search_horizons(&whole, longest, few);
+        let is_only = horizons.len() == 1;
         if reach == Reach::Promising {
             horizons.truncate(1);
         }
         let start = SearchStart::new(model, &whole, &horizons, few, options.seed);
         let (search_horizon, search) = (start.horizon, start.data);
+        let follows_first = is_only || is_followed(&start.fit, &search);
         let model = &start.model;
         let mut base = Hypothesis::new(Vec::new(), start.fit);
         let training = whole.recut(longest);
         let held_out = (!held_out.is_empty())
-            .then(|| FitData::new(model, held_out, longest).weighted_like(&training));
+            .then(|| FitData::new(model, held_out, longest).weighted_like(&training))
+            .map(|held_out| held_out.halted_by(&course.halt));
         base.evaluate(
             &search,
             &training,
@@ -110,7 +127,7 @@ impl<'a> Evaluator<'a> {
             held_out.as_ref(),
             FitOptions::iterations(FINISH),
         );
-        let changes = every_change(&base, &candidates, &search);
+        let changes = Arc::new(every_change(&base, &candidates, &search));
         Evaluator {
             search,
             training,
@@ -129,8 +146,71 @@ impl<'a> Evaluator<'a> {
             seed: options.seed,
             most_effects,
             reach,
-            steps,
+            follows_first,
+            course,
+            fork: None,
+            evaluated: Mutex::default(),
         }
+    }
+
+    /// The same for a search of everything, as far as this one has come.
+    pub fn for_everything(&self) -> Evaluator<'a> {
+        Evaluator {
+            search: self.search.clone(),
+            training: self.training.clone(),
+            held_out: self.held_out.clone(),
+            given: self.given.clone(),
+            base: self.base.clone(),
+            candidates: self.candidates.clone(),
+            changes: self.changes.clone(),
+            start: self.start.clone(),
+            known: self.known.clone(),
+            course: self.course.clone(),
+            reach: Reach::Everything,
+            fork: None,
+            evaluated: Mutex::default(),
+            ..*self
+        }
+    }
+
+    /// Takes note of what was evaluated for the search.
+    fn note(&self, hypothesis: &Hypothesis) {
+        let runs = hypothesis.fit().simulations * self.training.motions.len();
+        self.course.evaluated(runs);
+        self.lock_evaluated().lately.push(hypothesis.clone());
+        self.show(hypothesis);
+    }
+
+    /// Shows a hypothesis where it is the best so far.
+    fn show(&self, hypothesis: &Hypothesis) {
+        let mut evaluated = self.lock_evaluated();
+        let reference = evaluated.best.as_ref().unwrap_or(&self.base);
+        let is_lower = hypothesis.deciding_mean() < reference.deciding_mean();
+        if is_lower && self.improves(reference, hypothesis) {
+            let (before_rad, floor_rad) = (self.given.deciding_rms_rad(), self.training.floor());
+            self.course.found(hypothesis, before_rad, floor_rad);
+            evaluated.best = Some(hypothesis.clone());
+        }
+    }
+
+    /// Shows the best of these, whatever was shown over another horizon.
+    pub fn show_best(&self, tried: &[Vec<Hypothesis>]) {
+        self.lock_evaluated().best = None;
+        self.course.forget();
+        for hypothesis in tried.iter().flatten() {
+            self.show(hypothesis);
+        }
+    }
+
+    /// What was evaluated since the last call: what the search has not kept, where it was ended.
+    pub fn take_evaluated(&self) -> Vec<Hypothesis> {
+        std::mem::take(&mut self.lock_evaluated().lately)
+    }
+
+    fn lock_evaluated(&self) -> std::sync::MutexGuard<'_, Evaluated> {
+        self.evaluated
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What a hypothesis leaves to explain: in short windows or over the evaluation horizon,
@@ -153,6 +233,12 @@ impl<'a> Evaluator<'a> {
     pub fn at_noise_floor(&self, hypothesis: &Hypothesis) -> bool {
         let evaluation = hypothesis.evaluation.as_ref();
         evaluation.is_some_and(Evaluation::is_noise)
+    }
+
+    /// Evaluates a hypothesis that the search has found.
+    pub fn evaluate_found(&self, hypothesis: &mut Hypothesis) {
+        self.evaluate(hypothesis);
+        self.note(hypothesis);
     }
 
     /// Evaluates a hypothesis over the evaluation horizon.
@@ -186,19 +272,9 @@ impl<'a> Evaluator<'a> {
                 self.held_out.as_ref(),
                 options,
             );
+            self.note(hypothesis);
             done();
         });
-    }
-
-    /// Has `again` evaluate all those that were evaluated over another horizon.
-    pub fn evaluate_again(
-        &self,
-        sizes: &mut [Vec<Hypothesis>],
-        again: impl Fn(&mut Hypothesis) + Send + Sync,
-    ) {
-        let all = sizes.iter_mut().flatten();
-        let evaluated: Vec<&mut Hypothesis> = all.filter(|h| h.evaluation.is_some()).collect();
-        evaluated.into_par_iter().for_each(again);
     }
 
     /// The squared error above which a hypothesis is hopeless beside the best of these, or beside

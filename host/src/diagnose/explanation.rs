@@ -2,7 +2,7 @@
 
 use super::block_errors::BlockErrors;
 use super::evaluator::Evaluator;
-use super::findings::{Fold, ResidualStructure, Verdict};
+use super::findings::{Fold, ResidualStructure, SearchEnded, Verdict};
 use super::hypothesis::Hypothesis;
 use super::measured_value::values_behind;
 use super::stability::most_raised;
@@ -28,7 +28,7 @@ pub(super) struct VerdictEvidence<'a> {
     /// The simplest explanation that is not clearly worse than the best.
     pub explanation: Explanation<'a>,
     /// Those whose predictions no noise lets these motions tell from it.
-    pub equivalents: &'a [Hypothesis],
+    pub equivalents: Vec<Hypothesis>,
     /// Placebo regressors that gain anything, evaluated, where effects are the explanation.
     pub placebos: Vec<Hypothesis>,
     pub residual_structure: Option<ResidualStructure>,
@@ -37,6 +37,10 @@ pub(super) struct VerdictEvidence<'a> {
     /// The explanation with other motions held out.
     pub folds: Vec<Fold>,
     pub seed: u64,
+    /// How the search ended.
+    pub ended: SearchEnded,
+    /// What was not examined, in words.
+    pub left_out: Vec<String>,
 }
 
 /// What explains the measurement, the simplest that does.
@@ -104,7 +108,7 @@ impl<'a> VerdictEvidence<'a> {
 
     /// Explanations no less simple than the chosen one that the data do not tell from it.
     /// The simplest come first.
-    pub fn rivals(&self) -> Vec<&'a Hypothesis> {
+    pub fn rivals(&self) -> Vec<&Hypothesis> {
         let mut rivals = self.as_good();
         let chosen = self.chosen();
         for other in self.equivalents.iter().filter(|h| !h.extends(chosen)) {
@@ -257,6 +261,7 @@ impl<'a> VerdictEvidence<'a> {
             free_form_low: structure.map_or(0.0, |s| s.explainable_low),
             per_motion_reduction: self.per_motion_reduction.unwrap_or(0.0),
             worst_fold: most_raised(&self.folds),
+            is_examined: self.left_out.is_empty(),
             placebo_ranks: kind == Kind::Effects && self.placebo_ranks(),
             rivals,
         }

@@ -27,6 +27,21 @@ pub enum Verdict {
     Unfit,
 }
 
+/// How the search for explanations ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SearchEnded {
+    /// All was tried that could matter.
+    #[default]
+    Complete,
+    /// An explanation leaves no more than the user tolerates.
+    Tolerance,
+    /// Its time was over.
+    Time,
+    /// The user took what there was.
+    Stopped,
+}
+
 /// An effect with its fitted values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FittedEffect {
@@ -196,6 +211,10 @@ pub struct Diagnosis {
     pub shorter_step_s: Option<f64>,
     /// How long the windows of each motion are.
     pub windows: Vec<MotionWindow>,
+    /// How the search ended.
+    pub search_ended: SearchEnded,
+    /// What was not examined because the time was over or the user took what there was, in words.
+    pub left_out: Vec<String>,
 }
 
 impl FittedEffect {
@@ -295,6 +314,8 @@ impl Diagnosis {
             horizon_s: None,
             shorter_step_s: None,
             windows: Vec::new(),
+            search_ended: SearchEnded::Complete,
+            left_out: Vec::new(),
         }
     }
 }

@@ -41,7 +41,7 @@ impl Evaluator<'_> {
                 let glance = self.glance(from, &guess);
                 (guess, glance)
             });
-            self.steps.step(1);
+            self.course.step(1);
             glances.collect()
         });
         let glances: Vec<Vec<Glance>> = glances.collect();
@@ -98,7 +98,7 @@ impl Evaluator<'_> {
         }
         let first = glances.first().filter(|_| self.small());
         let restarts = first.map(|(guess, _)| self.random_starts(from, guess));
-        self.steps.step(1);
+        self.course.step(1);
         let looks = glances.into_iter().map(|(_, hypothesis)| hypothesis);
         looks
             .chain(restarts.into_iter().flatten())

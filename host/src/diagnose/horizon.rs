@@ -106,9 +106,8 @@ impl Evaluator<'_> {
         }
         if let Some(horizon) = followed {
             let before = self.training.clone();
-            self.recut(horizon);
-            self.evaluate_again(sizes, |hypothesis| {
-                hypothesis.run_longer(&before, &self.training, self.held_out.as_ref());
+            self.judge_over(horizon, sizes, |hypothesis, training, held_out| {
+                hypothesis.run_longer(&before, training, held_out);
             });
         }
         followed.is_some()
@@ -136,10 +135,11 @@ impl Evaluator<'_> {
                 leader.evaluate(&self.search, &training, held_out.as_ref(), options);
             });
             if leaders.iter().any(|leader| self.at_noise_floor(leader)) {
-                self.recut(horizon);
-                self.evaluate_again(sizes, |hypothesis| {
+                let search = self.search.clone();
+                self.judge_over(horizon, sizes, |hypothesis, training, held_out| {
                     hypothesis.evaluation = None;
-                    self.evaluate(hypothesis);
+                    let options = FitOptions::iterations(EVALUATE);
+                    hypothesis.evaluate(&search, training, held_out, options);
                 });
                 return;
             }
@@ -188,19 +188,41 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Judges over another horizon.
+    /// Judges over another horizon what was not evaluated yet.
     pub(super) fn recut(&mut self, horizon: Horizon) {
-        self.horizon = horizon;
-        (self.training, self.held_out) = self.cut(horizon);
-        for hypothesis in [&mut self.base, &mut self.given] {
+        self.judge_over(horizon, &mut [], |_, _, _| ());
+    }
+
+    /// Judges over another horizon; `again` evaluates over its motions all that were evaluated over
+    /// the one before. Where that is ended all stays as it was.
+    fn judge_over(
+        &mut self,
+        horizon: Horizon,
+        sizes: &mut [Vec<Hypothesis>],
+        again: impl Fn(&mut Hypothesis, &FitData, Option<&FitData>) + Sync,
+    ) {
+        let (training, held_out) = self.cut(horizon);
+        let models = [&self.base, &self.given].map(|hypothesis| {
+            let mut hypothesis = hypothesis.clone();
             hypothesis.evaluation = None;
-            hypothesis.evaluate(
-                &self.search,
-                &self.training,
-                self.held_out.as_ref(),
-                FitOptions::iterations(FINISH),
-            );
+            let options = FitOptions::iterations(FINISH);
+            hypothesis.evaluate(&self.search, &training, held_out.as_ref(), options);
+            hypothesis
+        });
+        let all = sizes.iter_mut().flatten();
+        let mut evaluated: Vec<&mut Hypothesis> = all.filter(|h| h.evaluation.is_some()).collect();
+        let afresh = evaluated.par_iter().map(|hypothesis| {
+            let mut hypothesis = Hypothesis::clone(hypothesis);
+            again(&mut hypothesis, &training, held_out.as_ref());
+            hypothesis
+        });
+        let afresh: Vec<Hypothesis> = afresh.collect();
+        for (known, afresh) in evaluated.iter_mut().zip(afresh) {
+            **known = afresh;
         }
+        [self.base, self.given] = models;
+        (self.horizon, self.training, self.held_out) = (horizon, training, held_out);
+        self.show_best(sizes);
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::findings::Diagnosis;
 use super::options::DiagnoseOptions;
-use super::pipeline::diagnose;
+use super::pipeline::diagnose_on;
+use super::progress::Course;
 use super::words::{HELD_OUT, LOGS, MODEL};
 use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::Result;
@@ -33,6 +34,7 @@ pub fn diagnose_logs(
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<LogDiagnosis> {
+    let course = Course::new(options, progress);
     let mut findings = conventions::findings(&logs.all(), model, file)?;
     if options.trust_log {
         // What a simulation proves becomes a warning; what cannot be read stays refused.
@@ -52,8 +54,8 @@ pub fn diagnose_logs(
         horizon.check(model, named.training.iter().chain(&named.held_out))?;
     }
     let split = split(named.training, named.held_out);
-    let (training, held_out) = (split.training.clone(), split.held_out.clone());
-    let mut diagnosis = diagnose(model, training, held_out, options, progress);
+    let motions = [split.training.clone(), split.held_out.clone()];
+    let mut diagnosis = diagnose_on(&course, model, motions, options);
     let warned = findings.iter().filter(|f| f.severity == Severity::Warn);
     diagnosis.warnings.extend(warned.map(LogFinding::statement));
     for line in &mut diagnosis.next {

@@ -16,6 +16,7 @@ mod first_look;
 mod horizon;
 mod hypothesis;
 mod inseparable;
+mod judging;
 mod log_outcome;
 mod logs;
 mod longer_runs;
@@ -42,7 +43,7 @@ pub mod words;
 pub use candidates::candidates;
 pub use findings::{
     Alternative, BudgetShare, BudgetedPart, Diagnosis, FREE_VALUES, FittedEffect, Fold,
-    MotionError, ResidualStructure, RuledOut, Verdict, WrongValue,
+    MotionError, ResidualStructure, RuledOut, SearchEnded, Verdict, WrongValue,
 };
 pub use inseparable::how_to_measure;
 pub use log_outcome::{LogOutcome, OutcomeFile, OutcomeKey, OutcomeValue, outcomes_in};

@@ -1,6 +1,6 @@
 //! What a diagnosis may be told.
 
-use crate::fitting::Horizon;
+use crate::fitting::{Horizon, StopSwitch};
 use crate::model::ParameterPath;
 
 /// How to diagnose.
@@ -19,8 +19,13 @@ pub struct DiagnoseOptions {
     /// Whether to diagnose even where another sign, zero, unit or drive in the model file clearly
     /// lowers the error.
     pub trust_log: bool,
-    /// Error that is good enough for the user, rad.
+    /// Error that is good enough for the user, rad: an explanation that leaves no more ends the
+    /// search.
     pub tolerance_rad: Option<f64>,
+    /// Seconds that the diagnosis may take, judging included; it claims no more than it examined.
+    pub within_s: Option<f64>,
+    /// Ends the diagnosis from another thread.
+    pub stop: StopSwitch,
 }
 
 impl Default for DiagnoseOptions {
@@ -33,6 +38,8 @@ impl Default for DiagnoseOptions {
             most_effects: 3,
             trust_log: false,
             tolerance_rad: None,
+            within_s: None,
+            stop: StopSwitch::default(),
         }
     }
 }

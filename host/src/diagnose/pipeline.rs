@@ -4,15 +4,16 @@
 //! are fitted as exactly as they are stated, and placebos, other motions held out and explanations
 //! with the same predictions are looked for.
 
-use super::budget::{STRUCTURE_STEPS, steps_up_to};
+use super::budget::JUDGING_STEPS;
 use super::conclusion::conclude;
 use super::consistency::OwnFits;
 use super::evaluator::{Evaluator, Reach, every_change};
 use super::explanation::{Explanation, Tried, VerdictEvidence};
-use super::findings::Diagnosis;
+use super::findings::{Diagnosis, SearchEnded};
 use super::hypothesis::Hypothesis;
 use super::options::DiagnoseOptions;
-use super::progress::STRUCTURE;
+use super::progress::{Course, Stage};
+use super::search::Found;
 use super::stability::folds;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, Progress, stated_from};
@@ -27,6 +28,11 @@ const RANKING: f64 = 0.25;
 ///
 /// `training` motions are fitted; `held_out` motions decide. Without held-out motions the training
 /// motions decide, and the diagnosis says so.
+///
+/// Where its time is over, or [`StopSwitch::accept`](crate::fitting::StopSwitch::accept) asks for
+/// it, the best so far is judged; the diagnosis says what was left out. By
+/// [`StopSwitch::abandon`](crate::fitting::StopSwitch::abandon) it unwinds with
+/// [`Abandoned`](crate::fitting::Abandoned).
 pub fn diagnose(
     model: &Model,
     training: Vec<Motion>,
@@ -34,73 +40,83 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Diagnosis {
+    let course = Course::new(options, progress);
+    diagnose_on(&course, model, [training, held_out], options)
+}
+
+/// The same of motions to fit and motions held out, on a course whose clock runs already.
+pub(super) fn diagnose_on(
+    course: &Course,
+    model: &Model,
+    [training, held_out]: [Vec<Motion>; 2],
+    options: &DiagnoseOptions,
+) -> Diagnosis {
     let mut model = model.clone();
     model.free.retain(|path| !options.known.contains(path));
-    let searched = |reach| {
+    let evaluator = |reach| {
         let (training, held_out) = (training.clone(), held_out.clone());
-        let evaluator = Evaluator::new(&model, training, held_out, options, reach, progress);
-        Searched::by(evaluator)
+        Evaluator::new(&model, training, held_out, options, reach, course.clone())
     };
-    let mut found = searched(Reach::Promising);
-    if !found.is_explained() && found.evaluator.most_effects > 1 {
-        let further = searched(Reach::Everything);
-        if further.is_explained() {
-            found = further;
-        }
+    let mut found = Searched::by(evaluator(Reach::Promising));
+    if found.may_go_on() {
+        let further = match found.evaluator.fork.take() {
+            Some(fork) => {
+                let (evaluator, found) = *fork;
+                Ok(Searched::further(evaluator, found))
+            }
+            None => {
+                // The first one's evaluator stands, whatever becomes of this one.
+                let evaluator = course.halt.until(|| evaluator(Reach::Everything));
+                evaluator.map(Searched::by)
+            }
+        };
+        found.take(further.ok());
     }
-    let Searched {
-        evaluator,
-        mut tried,
-    } = found;
-    let own_fits = evaluator.tell_motions_apart(&mut tried);
-    evaluator.settle(&mut tried);
-    let explanation = tried.explanation(&evaluator);
-    let equivalents = evaluator.equivalents(explanation, &tried.hypotheses);
-    let mut evidence = VerdictEvidence {
-        evaluator: &evaluator,
-        tried: &tried,
-        explanation,
-        equivalents: &equivalents,
-        placebos: match explanation {
-            Explanation::Effects(chosen) => evaluator.try_placebos(chosen),
-            _ => Vec::new(),
-        },
-        residual_structure: None,
-        per_motion_reduction: None,
-        folds: Vec::new(),
-        seed: options.seed,
-    };
-    evidence.residual_structure = evaluator.residual_structure(evidence.chosen());
-    if !matches!(evidence.explanation, Explanation::Given(_)) {
-        evidence.folds = folds(&evaluator, evidence.reference(), evidence.chosen());
-    }
-    evidence.per_motion_reduction = own_fits
-        .as_ref()
-        .and_then(|own| own.reduction(evidence.chosen()));
-    let diagnosis = conclude(&evidence);
-    evaluator.steps.step(STRUCTURE_STEPS);
-    diagnosis
+    found.judged(options.seed)
 }
 
 /// A search that was done, and what it tried.
 pub(super) struct Searched<'a> {
     evaluator: Evaluator<'a>,
     tried: Tried,
+    ended: SearchEnded,
+    /// What it did not try because it was ended.
+    left_out: Vec<String>,
 }
 
 impl<'a> Searched<'a> {
-    pub fn by(mut evaluator: Evaluator<'a>) -> Self {
-        let (best, hypotheses) = evaluator.search();
-        let all = steps_up_to(evaluator.most_effects, evaluator.candidates.len());
-        evaluator.steps.begin(STRUCTURE, all);
-        let least = best.as_ref().unwrap_or(&evaluator.base).search_mean;
-        let tried = Tried {
-            values: evaluator.try_values(Some(least)),
-            values_refitted: evaluator.try_values_refitted(Some(least)),
-            hypotheses,
-            best,
-        };
-        Searched { evaluator, tried }
+    pub fn by(evaluator: Evaluator<'a>) -> Self {
+        Searched::further(evaluator, Found::default())
+    }
+
+    /// A search that goes on from what was found.
+    fn further(mut evaluator: Evaluator<'a>, mut found: Found) -> Self {
+        let course = evaluator.course.clone();
+        course.keep_time();
+        // What is ended before it begins has tried nothing.
+        found.at.get_or_insert(Stage::Alone);
+        let halted = course.halt.until(|| evaluator.search(&mut found)).is_err();
+        let mut left_out = Vec::new();
+        if halted {
+            evaluator.keep_evaluated(&mut found);
+            left_out = found.not_tried(evaluator.most_effects);
+        }
+        Searched {
+            ended: match (halted, found.is_tolerated) {
+                (true, _) if course.is_accepted() => SearchEnded::Stopped,
+                (true, _) => SearchEnded::Time,
+                (false, true) => SearchEnded::Tolerance,
+                (false, false) => SearchEnded::Complete,
+            },
+            tried: Tried {
+                values: found.values,
+                values_refitted: found.values_refitted,
+                hypotheses: found.sizes.into_iter().flatten().collect(),
+                best: found.best,
+            },
+            evaluator,
+            left_out,
+        }
     }
 
     /// Whether what it found leaves nothing to explain.
@@ -110,7 +126,106 @@ impl<'a> Searched<'a> {
             other => self.evaluator.at_noise_floor(other.hypothesis()),
         }
     }
+
+    /// Whether a second search follows. Where this one was ended, it is left out.
+    fn may_go_on(&mut self) -> bool {
+        let is_needed = self.ended != SearchEnded::Tolerance
+            && self.evaluator.most_effects > 1
+            && !self.is_explained();
+        let was_ended = !self.left_out.is_empty();
+        if is_needed && was_ended {
+            self.left_out.push(SECOND.to_string());
+        }
+        is_needed && !was_ended
+    }
+
+    /// Takes what the second search found in place of what this one did where it explains all;
+    /// `None` where it was ended before it began.
+    fn take(&mut self, further: Option<Searched<'a>>) {
+        match further {
+            Some(further) if further.is_explained() => *self = further,
+            Some(further) if further.ended == SearchEnded::Complete => {}
+            Some(further) if further.ended == SearchEnded::Tolerance => *self = further,
+            ended => {
+                let course = &self.evaluator.course;
+                self.ended = match course.is_accepted() {
+                    true => SearchEnded::Stopped,
+                    false => SearchEnded::Time,
+                };
+                let part = if ended.is_some() { "part of " } else { "" };
+                self.left_out.push(format!("{part}{SECOND}"));
+            }
+        }
+    }
+
+    /// The diagnosis that what was found allows.
+    fn judged(self, seed: u64) -> Diagnosis {
+        let Searched {
+            evaluator,
+            mut tried,
+            ended,
+            left_out,
+        } = self;
+        let course = evaluator.course.clone();
+        let again = evaluator.reach == Reach::Everything;
+        course.begin(Stage::Judging, again, JUDGING_STEPS);
+        let mut judging = course.judging(!left_out.is_empty());
+        let own_fits = judging.part("the fit of each motion by itself", 0.25, || {
+            evaluator.tell_motions_apart(&mut tried)
+        });
+        judging.part("the values to their last digit", 0.35, || {
+            evaluator.settle(&mut tried)
+        });
+        let explanation = tried.explanation(&evaluator);
+        let mut evidence = VerdictEvidence {
+            evaluator: &evaluator,
+            tried: &tried,
+            explanation,
+            equivalents: Vec::new(),
+            placebos: Vec::new(),
+            residual_structure: None,
+            per_motion_reduction: None,
+            folds: Vec::new(),
+            seed,
+            ended,
+            left_out,
+        };
+        course.step(1);
+        let structure = judging.part("the structure of what is left", 0.4, || {
+            evaluator.residual_structure(evidence.chosen())
+        });
+        evidence.residual_structure = structure.flatten();
+        course.step(1);
+        if let Explanation::Effects(chosen) = explanation {
+            let placebos = judging.part("placebos", 0.4, || evaluator.try_placebos(chosen));
+            evidence.placebos = placebos.unwrap_or_default();
+        }
+        course.step(1);
+        if !matches!(explanation, Explanation::Given(_)) {
+            let folds = judging.part("other motions held out", 0.4, || {
+                folds(&evaluator, evidence.reference(), evidence.chosen())
+            });
+            evidence.folds = folds.unwrap_or_default();
+        }
+        course.step(1);
+        let equivalents = judging.part("explanations with the same predictions", 0.5, || {
+            evaluator.equivalents(explanation, &tried.hypotheses)
+        });
+        evidence.equivalents = equivalents.unwrap_or_default();
+        evidence.per_motion_reduction = own_fits
+            .flatten()
+            .as_ref()
+            .and_then(|own| own.reduction(evidence.chosen()));
+        evidence.left_out.extend(judging.take_left_out());
+        course.step(1);
+        let diagnosis = conclude(&evidence, &mut judging);
+        course.step(JUDGING_STEPS);
+        diagnosis
+    }
 }
+
+/// The search that spares no candidate, in words.
+const SECOND: &str = "the second search";
 
 impl Evaluator<'_> {
     /// Fits of the explanation to each motion by itself. Where values that one motion found suit

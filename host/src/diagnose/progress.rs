@@ -1,88 +1,339 @@
-//! How far a diagnosis has come, in steps of about the same length.
+//! How far a diagnosis has come, over all that it does, and what ends it.
 
-use crate::fitting::Progress;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use super::hypothesis::Hypothesis;
+use super::judging::Judging;
+use super::options::DiagnoseOptions;
+use crate::fitting::{BestSoFar, Halt, Progress, StopSwitch};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
-/// What is done, one after the other.
-const STAGES: [&str; 5] = [
-    "the model as it is",
-    "every effect alone",
-    "pairs and swaps",
-    "larger sets",
-    "residual structure",
-];
-/// The stage of sets of one effect; the stage of pairs is 2.
-pub(super) const ALONE: usize = 1;
-/// The stage of three effects and more.
-pub(super) const LARGER: usize = 3;
-/// The stage of the residual structure.
-pub(super) const STRUCTURE: usize = 4;
-
-/// Counts the fits of a diagnosis, which run side by side, and tells who listens.
-pub(super) struct StepCounter<'a> {
-    heard: &'a (dyn Fn(Progress) + Sync),
-    done: AtomicUsize,
-    stage: AtomicUsize,
-    again: bool,
-    total: usize,
+/// What is done, one after the other; the search again where it explained nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Stage {
+    Base,
+    Alone,
+    Values,
+    Pairs,
+    Larger,
+    Judging,
 }
 
-impl<'a> StepCounter<'a> {
-    /// None done yet of `total`, in the first search or again.
-    pub fn new(total: usize, again: bool, heard: &'a (dyn Fn(Progress) + Sync)) -> Self {
-        let steps = StepCounter {
-            heard,
-            done: AtomicUsize::new(0),
-            stage: AtomicUsize::new(0),
-            again,
-            total,
-        };
-        steps.step(0);
-        steps
+impl Stage {
+    /// Those of one search.
+    pub const SEARCH: [Stage; 5] = [
+        Stage::Base,
+        Stage::Alone,
+        Stage::Values,
+        Stage::Pairs,
+        Stage::Larger,
+    ];
+
+    /// The stage of sets of so many effects.
+    pub fn of_size(size: usize) -> Stage {
+        match size {
+            0 | 1 => Stage::Alone,
+            2 => Stage::Pairs,
+            _ => Stage::Larger,
+        }
     }
 
-    /// `count` more steps are done.
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Base => "the model as it is",
+            Stage::Alone => "every effect alone",
+            Stage::Values => "values of the model file",
+            Stage::Pairs => "sets of two effects",
+            Stage::Larger => "sets of three effects",
+            Stage::Judging => "judging",
+        }
+    }
+
+    /// All that is tried in it, for people.
+    pub fn all_of_it(self) -> &'static str {
+        match self {
+            Stage::Base => "the model as it is",
+            Stage::Alone => "the single effects",
+            Stage::Values => "the values of the model file",
+            Stage::Pairs => "the sets of two effects",
+            Stage::Larger => "the sets of three effects",
+            Stage::Judging => "the judging",
+        }
+    }
+
+    /// Share of a search that explains nothing, in thousandths of both searches and the judging:
+    /// measured on arms whose law is outside the library.
+    fn weight(self, again: bool) -> usize {
+        match (self, again) {
+            (Stage::Base, false) => 5,
+            (Stage::Alone, false) => 100,
+            (Stage::Values, false) => 25,
+            (Stage::Pairs, false) => 170,
+            (Stage::Larger, false) => 250,
+            (Stage::Base, true) => 0,
+            (Stage::Alone, true) => 0,
+            (Stage::Values, true) => 0,
+            (Stage::Pairs, true) => 150,
+            (Stage::Larger, true) => 220,
+            (Stage::Judging, _) => 80,
+        }
+    }
+}
+
+/// Steps of progress in all.
+const TOTAL: usize = 1000;
+/// Steps that must be done before they say how long the others take, and how long they must have
+/// taken.
+const TELLING: f64 = 20.0;
+const TELLING_S: f64 = 2.0;
+/// Evaluations that the judging takes as long as.
+const JUDGING_EVALUATIONS: f64 = 25.0;
+/// The least and the most of the time that is kept for it, as shares of the whole.
+const KEPT: (f64, f64) = (0.03, 0.35);
+/// Seconds of the limit that are left to say what was found.
+const SAYING_S: f64 = 0.3;
+/// Time for the judging where a search without limit is ended, s, and its share of the time before.
+const JUDGING_S: f64 = 10.0;
+const JUDGING_SHARE: f64 = 0.1;
+
+/// The course of a diagnosis: its steps, which are told to who listens, and its end.
+#[derive(Clone)]
+pub(super) struct Course<'a> {
+    pub halt: Halt,
+    stop: StopSwitch,
+    within: Option<Duration>,
+    steps: Arc<Mutex<Steps>>,
+    heard: &'a (dyn Fn(Progress) + Sync),
+}
+
+#[derive(Default)]
+struct Steps {
+    again: bool,
+    stage: Option<Stage>,
+    /// Weights of the stages that are done or needless, and of those that were done.
+    passed: f64,
+    spent: f64,
+    /// Steps of the stage, and those that are expected.
+    done: usize,
+    expected: usize,
+    /// The most that was told.
+    told: usize,
+    best: Option<BestSoFar>,
+    /// Runs of evaluations, and how many there were.
+    evaluated: (usize, usize),
+}
+
+impl<'a> Course<'a> {
+    /// One that begins now.
+    pub fn new(options: &DiagnoseOptions, heard: &'a (dyn Fn(Progress) + Sync)) -> Self {
+        Course::halted_by(Halt::by(&options.stop), options, heard)
+    }
+
+    /// One that this ends.
+    pub fn halted_by(
+        halt: Halt,
+        options: &DiagnoseOptions,
+        heard: &'a (dyn Fn(Progress) + Sync),
+    ) -> Self {
+        Course {
+            halt,
+            stop: options.stop.clone(),
+            within: options.within_s.map(Duration::from_secs_f64),
+            steps: Arc::default(),
+            heard,
+        }
+    }
+
+    fn steps(&self) -> MutexGuard<'_, Steps> {
+        self.steps.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A stage begins, of the search or of the one done `again`, of so many steps if it does not end
+    /// early; all before it are done, or needless.
+    pub fn begin(&self, stage: Stage, again: bool, expected: usize) {
+        let mut steps = self.steps();
+        steps.pass(stage, again);
+        steps.expected = expected;
+        drop(steps);
+        self.step(0);
+    }
+
+    /// `count` more steps of the stage are done.
     pub fn step(&self, count: usize) {
-        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
-        let stage = self.stage.load(Ordering::Relaxed);
-        let what = STAGES[stage.min(STAGES.len() - 1)];
-        (self.heard)(Progress {
-            done: done.min(self.total),
-            total: self.total,
-            what: match self.again {
+        let elapsed_s = self.halt.elapsed().as_secs_f64();
+        let mut steps = self.steps();
+        steps.done += count;
+        let within_s = self.within.map(|within| within.as_secs_f64());
+        let progress = steps.progress(elapsed_s, within_s);
+        // Under the lock: what is heard never falls, whichever thread tells it.
+        (self.heard)(progress);
+        drop(steps);
+    }
+
+    /// An evaluation is done, that took so many runs: the judging will take as long as several.
+    pub fn evaluated(&self, runs: usize) {
+        let mut steps = self.steps();
+        steps.evaluated.0 += runs;
+        steps.evaluated.1 += 1;
+        drop(steps);
+        self.keep_time();
+    }
+
+    /// The search may take the time that is not kept for the judging, and ends where what was found
+    /// is accepted.
+    pub fn keep_time(&self) {
+        let end = self.within.map(|within| {
+            let (runs, count) = self.steps().evaluated;
+            let each = runs as f64 / count.max(1) as f64;
+            let rate = self.halt.runs() as f64 / self.halt.elapsed().as_secs_f64().max(1e-3);
+            let kept = Duration::from_secs_f64(JUDGING_EVALUATIONS * each / rate.max(1.0));
+            let (least, most) = (within.mul_f64(KEPT.0), within.mul_f64(KEPT.1));
+            within.saturating_sub(kept.clamp(least, most))
+        });
+        self.halt.ends_at(end, true);
+    }
+
+    /// Whether what was found is enough.
+    pub fn is_accepted(&self) -> bool {
+        self.stop.is_accepted()
+    }
+
+    /// A best so far. What is shown leaves less than what was shown before.
+    pub fn found(&self, hypothesis: &Hypothesis, before_rad: f64, floor_rad: f64) {
+        let error_rad = hypothesis.deciding_rms_rad();
+        let mut steps = self.steps();
+        if steps.best.as_ref().is_none_or(|b| error_rad < b.error_rad) {
+            steps.best = Some(BestSoFar {
+                names: hypothesis.names(),
+                before_rad,
+                error_rad,
+                floor_rad,
+            });
+        }
+    }
+
+    /// Nothing is the best so far.
+    pub fn forget(&self) {
+        self.steps().best = None;
+    }
+
+    /// The judging begins: when it has to be done, where the search was ended or has a limit.
+    pub fn judging(&self, was_ended: bool) -> Judging {
+        let elapsed = self.halt.elapsed();
+        let within = self
+            .within
+            .map(|within| within.saturating_sub(Duration::from_secs_f64(SAYING_S)));
+        let waits = was_ended && (self.within.is_none() || self.is_accepted());
+        let waiting = waits
+            .then(|| elapsed + Duration::from_secs_f64(JUDGING_S) + elapsed.mul_f64(JUDGING_SHARE));
+        let end = within.into_iter().chain(waiting).min();
+        Judging::until(end, &self.halt)
+    }
+}
+
+impl Steps {
+    /// Passes the stages before this one.
+    fn pass(&mut self, stage: Stage, again: bool) {
+        self.spent += self.in_stage();
+        let searched = |until: Stage, again: bool| -> usize {
+            let before = Stage::SEARCH.into_iter().filter(|stage| *stage < until);
+            before.map(|stage| stage.weight(again)).sum()
+        };
+        self.again |= again;
+        let first = searched(Stage::Judging, false);
+        let passed = match (stage, self.again) {
+            (Stage::Judging, _) => first + searched(Stage::Judging, true),
+            (_, true) => first + searched(stage, true),
+            (_, false) => searched(stage, false),
+        };
+        self.passed = self.passed.max(passed as f64);
+        (self.stage, self.done) = (Some(stage), 0);
+    }
+
+    /// What of the stage's weight is done.
+    fn in_stage(&self) -> f64 {
+        let weight = self.stage.map_or(0, |stage| stage.weight(self.again));
+        let share = self.done as f64 / self.expected.max(1) as f64;
+        weight as f64 * share.min(1.0)
+    }
+
+    fn progress(&mut self, elapsed_s: f64, within_s: Option<f64>) -> Progress {
+        let done = self.passed + self.in_stage();
+        let spent = self.spent + self.in_stage();
+        let by_time = within_s.map_or(0.0, |within| TOTAL as f64 * elapsed_s / within);
+        self.told = self.told.max(done.max(by_time) as usize).min(TOTAL);
+        let left = (spent >= TELLING && elapsed_s >= TELLING_S)
+            .then(|| elapsed_s / spent * (TOTAL as f64 - done).max(0.0));
+        let limit = within_s.map(|within| (within - elapsed_s).max(0.0));
+        let what = self.stage.map_or("", Stage::name);
+        Progress {
+            done: self.told,
+            total: TOTAL,
+            what: match self.again && self.stage != Some(Stage::Judging) {
                 true => format!("second search: {what}").into(),
                 false => what.into(),
             },
-        });
-    }
-
-    /// A stage begins, with `done` steps done or found to be needless.
-    pub fn begin(&self, stage: usize, done: usize) {
-        self.stage.store(stage, Ordering::Relaxed);
-        self.done.store(done, Ordering::Relaxed);
-        self.step(0);
+            best: self.best.clone(),
+            left_s: left.into_iter().chain(limit).reduce(f64::min),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Mutex;
 
-    #[test]
-    fn steps_never_pass_the_total() {
+    /// Told steps and what is done, of stages that run over, end early, or are done again.
+    fn told(options: &DiagnoseOptions) -> Vec<(usize, String)> {
         let told = Mutex::new(Vec::new());
         let heard = |progress: Progress| {
+            assert_eq!(progress.total, TOTAL);
             let what = progress.what.to_string();
             told.lock().unwrap().push((progress.done, what));
         };
-        let steps = StepCounter::new(4, false, &heard);
-        steps.step(3);
-        steps.step(3);
-        steps.begin(STRUCTURE, 4);
-        let told = told.lock().unwrap();
-        let told: Vec<(usize, &str)> = told.iter().map(|(done, what)| (*done, &**what)).collect();
-        let [model, structure] = [STAGES[0], STAGES[STRUCTURE]];
-        assert_eq!(told, [(0, model), (3, model), (4, model), (4, structure)]);
+        let course = Course::new(options, &heard);
+        course.begin(Stage::Base, false, 2);
+        course.step(2);
+        course.begin(Stage::Alone, false, 10);
+        course.step(5);
+        // More than was expected, and then fewer.
+        course.step(20);
+        course.begin(Stage::Pairs, false, 10);
+        course.step(1);
+        course.begin(Stage::Pairs, true, 1);
+        course.step(1);
+        course.begin(Stage::Larger, true, 4);
+        course.step(4);
+        course.begin(Stage::Judging, true, 1);
+        course.step(1);
+        told.into_inner().unwrap()
+    }
+
+    #[test]
+    fn progress_never_falls_and_ends_with_the_judging_alone() {
+        for within_s in [None, Some(1e-3), Some(1e3)] {
+            let options = DiagnoseOptions {
+                within_s,
+                ..DiagnoseOptions::default()
+            };
+            let told = told(&options);
+            assert!(
+                told.windows(2).all(|pair| pair[0].0 <= pair[1].0),
+                "{told:?}"
+            );
+            assert_eq!(told.last().unwrap().0, TOTAL);
+            let before = &told[told.len() - 3];
+            assert_eq!(before.1, "second search: sets of three effects");
+            if within_s != Some(1e-3) {
+                assert_eq!(before.0, TOTAL - Stage::Judging.weight(true), "{told:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_weights_of_all_stages_are_the_whole() {
+        let searches = [false, true].map(|again| Stage::SEARCH.map(|stage| stage.weight(again)));
+        let all: usize = searches.iter().flatten().sum();
+        assert_eq!(all + Stage::Judging.weight(false), TOTAL);
     }
 }

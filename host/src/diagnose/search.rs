@@ -7,58 +7,164 @@
 //! the end.
 
 use super::budget::{
-    BASE_STEPS, BEAM, EVALUATION_STEPS, FINALISTS, FINISH, LOOK, SECOND_LOOKS, steps_up_to,
+    BEAM, EVALUATION_STEPS, FINALISTS, FINISH, FIRST_LOOK_STEPS, LOOK, PARTNERS, SECOND_LOOKS,
+    VALUE_STEPS, larger_steps, singles_steps,
 };
 use super::evaluator::{Evaluator, Reach, every_change};
+use super::explanation::Tried;
 use super::hypothesis::Hypothesis;
-use super::progress::{ALONE, LARGER};
+use super::progress::Stage;
 use super::verdict::FAR_OFF;
-use crate::fitting::{Candidate, FitOptions, InitialGuess};
+use crate::fitting::{FitOptions, InitialGuess};
 use rayon::prelude::*;
+use std::sync::Arc;
 
+mod found;
 mod partners;
 
+pub(super) use found::Found;
+use found::put_among;
+
 impl Evaluator<'_> {
-    /// The smallest set that pays, if any does, and every set that was tried.
-    pub fn search(&mut self) -> (Option<Hypothesis>, Vec<Hypothesis>) {
-        self.steps.begin(ALONE, BASE_STEPS);
-        let mut sizes = vec![self.singles()];
-        let mut taken_apart = Vec::new();
-        let mut best = self.smallest_that_pays(&sizes);
+    /// Looks for the smallest set that pays, if any does, and for a wrong value; keeps in `found`
+    /// what it has, and goes on from there.
+    pub fn search(&mut self, found: &mut Found) {
+        if found.sizes.is_empty() {
+            if self.leaves_tolerated(found) && !self.at_noise_floor(&self.base) {
+                (found.is_tolerated, found.at) = (true, None);
+                return;
+            }
+            self.begin(found);
+        }
         for size in 2..=self.most_effects {
-            if self.is_done(best.as_ref()) {
-                break;
+            if found.sizes.len() < size {
+                let goes_on = !self.is_done(found) && self.go_to(size, found);
+                if size == 2 {
+                    self.fork_from(found);
+                }
+                if !goes_on {
+                    break;
+                }
+            } else {
+                self.begin_size(size, found);
             }
-            let done = steps_up_to(size - 1, self.candidates.len());
-            self.steps.begin(size.min(LARGER), done);
-            let larger = self.grow(&sizes[size - 2]);
-            if larger.is_empty() {
-                break;
-            }
-            sizes.push(larger);
-            self.settle_horizon(&mut sizes);
-            let before = best.as_ref().map(|best| best.set.len());
-            best = self.pruned(&mut sizes, &mut taken_apart);
-            if !self.is_done(best.as_ref()) {
-                self.grow_further(best.as_ref(), before, &mut sizes);
-                best = self.pruned(&mut sizes, &mut taken_apart);
+            if !self.is_done(found) {
+                self.grow_further(found);
+                self.prune(found);
             }
             // Where one more gains nothing two more may still, if there is much to gain.
-            let now = best.as_ref().map(|best| best.set.len());
-            let excused = best.as_ref().is_some_and(|b| b.deciding_mean() < FAR_OFF);
-            if now == before && excused {
+            let best = found.best.as_ref();
+            let now = best.map(|best| best.set.len());
+            let excused = best.is_some_and(|best| best.deciding_mean() < FAR_OFF);
+            if now == found.before && excused {
                 break;
             }
         }
-        (best, sizes.into_iter().flatten().collect())
+        found.at = None;
     }
 
-    /// Whether there is nothing left to look for beside the best set, or the base model.
-    fn is_done(&self, best: Option<&Hypothesis>) -> bool {
-        match (best, self.reach) {
+    /// Keeps where a search of everything would part from this one, if it would begin as this one
+    /// did: all that was found until then it would find again.
+    fn fork_from(&mut self, found: &Found) {
+        let best = found.best.as_ref();
+        let is_explained = best.is_some_and(|best| self.is_explained_by(best));
+        if self.reach == Reach::Promising && self.follows_first && !is_explained {
+            self.fork = Some(Box::new((self.for_everything(), found.clone())));
+        }
+    }
+
+    /// Tries every effect alone, then every value.
+    fn begin(&mut self, found: &mut Found) {
+        found.at = Some(Stage::Alone);
+        let expected = singles_steps(self.candidates.len());
+        self.say(Stage::Alone, expected);
+        let singles = self.singles();
+        self.keep(found, |found| found.sizes.push(singles));
+        found.best = self.smallest_that_pays(&found.sizes);
+        self.search_values(found);
+    }
+
+    /// Says that a stage begins, of so many steps.
+    fn say(&self, stage: Stage, expected: usize) {
+        self.course
+            .begin(stage, self.reach == Reach::Everything, expected);
+    }
+
+    /// Goes on to sets of another size, and says so.
+    fn begin_size(&self, size: usize, found: &mut Found) {
+        let stage = Stage::of_size(size);
+        let beside = match self.reach {
+            Reach::Promising => PARTNERS,
+            Reach::Everything => 2 * FIRST_LOOK_STEPS * self.candidates.len(),
+        };
+        found.at = Some(stage);
+        self.say(stage, larger_steps(beside));
+    }
+
+    /// Grows sets of another size; whether there are any.
+    fn go_to(&mut self, size: usize, found: &mut Found) -> bool {
+        self.begin_size(size, found);
+        found.before = found.best.as_ref().map(|best| best.set.len());
+        let larger = self.grow(&found.sizes[size - 2]);
+        if larger.is_empty() {
+            return false;
+        }
+        self.keep(found, |found| found.sizes.push(larger));
+        let horizon = self.horizon;
+        self.settle_horizon(&mut found.sizes);
+        if self.horizon != horizon {
+            self.judge_values_again(found);
+        }
+        self.prune(found);
+        true
+    }
+
+    /// Evaluates values again that were evaluated over another horizon.
+    fn judge_values_again(&self, found: &mut Found) {
+        let values = found.values.iter_mut().chain(&mut found.values_refitted);
+        let values = values.filter_map(|value| value.evaluation.take().map(|_| value));
+        let values: Vec<&mut Hypothesis> = values.collect();
+        values
+            .into_par_iter()
+            .for_each(|value| self.evaluate(value));
+    }
+
+    /// Tries the values of the model's file: hopeless is what single effects make so, and those
+    /// that explain most.
+    fn search_values(&self, found: &mut Found) {
+        found.at = Some(Stage::Values);
+        self.say(Stage::Values, VALUE_STEPS);
+        let least = found.best.as_ref().unwrap_or(&self.base).search_mean;
+        let values = self.try_values(Some(least));
+        self.keep(found, |found| found.values = values);
+        let values = self.try_values_refitted(Some(least));
+        self.keep(found, |found| found.values_refitted = values);
+    }
+
+    /// Whether there is nothing left to look for beside the best set, or the base model; nothing is
+    /// where the user tolerates what is left.
+    fn is_done(&self, found: &mut Found) -> bool {
+        let best = found.best.as_ref();
+        let is_explained = match (best, self.reach) {
             (Some(best), Reach::Everything) => self.is_explained_by(best),
             (best, _) => self.at_noise_floor(best.unwrap_or(&self.base)),
-        }
+        };
+        found.is_tolerated = !is_explained && self.leaves_tolerated(found);
+        is_explained || found.is_tolerated
+    }
+
+    /// Whether the user asks for no less error than the explanation leaves that was found.
+    fn leaves_tolerated(&self, found: &Found) -> bool {
+        self.tolerance_rad.is_some_and(|tolerance_rad| {
+            let tried = Tried {
+                values: found.values.clone(),
+                values_refitted: found.values_refitted.clone(),
+                best: found.best.clone(),
+                hypotheses: Vec::new(),
+            };
+            let explanation = tried.explanation(self).hypothesis();
+            explanation.deciding_rms_rad() <= tolerance_rad
+        })
     }
 
     /// Whether a set leaves nothing but noise, over the horizon that counts and in the windows it
@@ -77,25 +183,25 @@ impl Evaluator<'_> {
         best.cloned()
     }
 
-    /// The smallest set that pays once each effect was taken out of that set, and out of the best
-    /// of every size that leaves less than all smaller ones: what helped another out of a false
-    /// valley is not missing itself.
-    fn pruned(
-        &self,
-        sizes: &mut [Vec<Hypothesis>],
-        taken_apart: &mut Vec<Vec<Candidate>>,
-    ) -> Option<Hypothesis> {
+    /// Takes each effect out of the smallest set that pays, and out of the best of every size that
+    /// leaves less than all smaller ones: what helped another out of a false valley is not missing
+    /// itself. Then the smallest that pays is the best.
+    fn prune(&self, found: &mut Found) {
         loop {
-            let best = self.smallest_that_pays(sizes);
-            let whole = best.iter().chain(leaders(sizes)).find(|whole| {
-                let known = taken_apart.iter().any(|known| whole.adds(known));
-                whole.set.len() > 1 && !known
-            });
+            found.best = self.smallest_that_pays(&found.sizes);
+            let whole = found
+                .best
+                .iter()
+                .chain(leaders(&found.sizes))
+                .find(|whole| {
+                    let known = found.taken_apart.iter().any(|known| whole.adds(known));
+                    whole.set.len() > 1 && !known
+                });
             let Some(whole) = whole.cloned() else {
-                return best;
+                return;
             };
-            self.take_apart(&whole, &mut sizes[whole.set.len() - 2]);
-            taken_apart.push(whole.set);
+            self.take_apart(&whole, &mut found.sizes[whole.set.len() - 2]);
+            self.keep(found, |found| found.taken_apart.push(whole.set));
         }
     }
 
@@ -104,29 +210,26 @@ impl Evaluator<'_> {
     fn take_apart(&self, whole: &Hypothesis, fewer: &mut Vec<Hypothesis>) {
         let rests = (0..whole.set.len()).into_par_iter().map(|leaving| {
             let mut rest = whole.without(leaving, &self.base, &self.search, FINISH);
-            self.evaluate(&mut rest);
+            self.evaluate_found(&mut rest);
+            self.course.step(EVALUATION_STEPS);
             rest
         });
         put_among(fewer, rests.collect());
     }
 
-    /// Looks further for sets of the largest size, where `best` leaves something to explain: every
-    /// candidate, or, where sets of that size bring nothing over the `before` effects of the best
-    /// smaller one, those that promise most beside it.
-    fn grow_further(
-        &mut self,
-        best: Option<&Hypothesis>,
-        before: Option<usize>,
-        sizes: &mut [Vec<Hypothesis>],
-    ) {
-        let [.., smaller, larger] = sizes else {
+    /// Looks further for sets of the largest size, where the best leaves something to explain: every
+    /// candidate, or, where sets of that size bring nothing over the effects of the best smaller one, those that promise most beside it.
+    fn grow_further(&mut self, found: &mut Found) {
+        let [.., smaller, larger] = &mut found.sizes[..] else {
             return;
         };
         if self.reach == Reach::Everything {
             self.try_all_beside(smaller, larger);
+            self.take_evaluated();
             return;
         }
-        let Some(stuck) = best.filter(|best| Some(best.set.len()) == before) else {
+        let stuck = found.best.as_ref();
+        let Some(stuck) = stuck.filter(|best| Some(best.set.len()) == found.before) else {
             return;
         };
         // Where the smaller sets do not pay either, from the one that leaves least.
@@ -140,6 +243,7 @@ impl Evaluator<'_> {
         };
         if let Some(from) = from {
             self.grow_afresh(&from.clone(), larger);
+            self.take_evaluated();
         }
     }
 
@@ -147,7 +251,7 @@ impl Evaluator<'_> {
     /// and puts what it finds among the sets that are `larger` by one: where the base model is far
     /// off, its prediction says little of what is missing beside the set.
     fn grow_afresh(&mut self, set: &Hypothesis, larger: &mut Vec<Hypothesis>) {
-        let afresh = every_change(set, &self.candidates, &self.search);
+        let afresh = Arc::new(every_change(set, &self.candidates, &self.search));
         let of_base = std::mem::replace(&mut self.changes, afresh);
         put_among(larger, self.grow(std::slice::from_ref(set)));
         self.changes = of_base;
@@ -201,7 +305,7 @@ impl Evaluator<'_> {
             let best = hypotheses[..survivors].par_iter_mut();
             best.for_each(|hypothesis| {
                 hypothesis.resume(&self.search, options);
-                self.steps.step(1);
+                self.course.step(1);
             });
         }
         hypotheses.sort_by(Hypothesis::by_error);
@@ -212,7 +316,7 @@ impl Evaluator<'_> {
     fn evaluated(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
         let count = self.promising(&hypotheses, None).min(FINALISTS);
         self.evaluate_all(&mut hypotheses[..count], None, || {
-            self.steps.step(EVALUATION_STEPS)
+            self.course.step(EVALUATION_STEPS)
         });
         hypotheses
     }
@@ -224,7 +328,7 @@ impl Evaluator<'_> {
         for from in beam(smaller) {
             let partners = self.partners(from, &tried);
             let found = partners.par_iter().map(|guess| {
-                self.steps.step(1);
+                self.course.step(1);
                 self.look(from, guess)
             });
             let found: Vec<Hypothesis> = found.collect();
@@ -247,18 +351,6 @@ fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
         .chain(best_behind.filter(|best| mean(best) < least))
 }
 
-/// Puts sets among those of their size that were tried, and in the place of the same ones that
-/// leave more.
-fn put_among(tried: &mut Vec<Hypothesis>, found: Vec<Hypothesis>) {
-    for new in found {
-        match tried.iter_mut().find(|known| known.adds(&new.set)) {
-            Some(known) if known.deciding_mean() <= new.deciding_mean() => {}
-            Some(known) => *known = new,
-            None => tried.push(new),
-        }
-    }
-}
-
 /// The one that leaves least where it counts.
 fn leader(of_size: &[Hypothesis]) -> Option<&Hypothesis> {
     let by_error =
@@ -278,5 +370,7 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
     leaders.collect::<Vec<_>>().into_iter().rev()
 }
 
+#[cfg(test)]
+mod ended_tests;
 #[cfg(test)]
 pub(super) mod tests;

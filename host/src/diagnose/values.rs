@@ -1,7 +1,7 @@
 //! Whether a value of the model file is wrong: the simplest explanation there is, so it is tried
 //! before any missing effect.
 
-use super::budget::{FINALISTS, FINISH, LOOK};
+use super::budget::{EVALUATION_STEPS, FINALISTS, FINISH, LOOK};
 use super::evaluator::Evaluator;
 use super::findings::WrongValue;
 use super::first_look::best_third;
@@ -86,7 +86,9 @@ impl Evaluator<'_> {
         promising.for_each(|value| self.finish(value, hopeless));
         values.sort_by(Hypothesis::by_error);
         let promising = self.promising(&values, least);
-        self.evaluate_all(&mut values[..promising], least, || {});
+        self.evaluate_all(&mut values[..promising], least, || {
+            self.course.step(EVALUATION_STEPS)
+        });
         values
     }
 }

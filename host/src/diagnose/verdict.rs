@@ -41,6 +41,8 @@ pub(super) struct Signs {
     pub placebo_ranks: bool,
     /// Whether other explanations do as well.
     pub rivals: bool,
+    /// Whether all was examined that could contradict it.
+    pub is_examined: bool,
 }
 
 /// Share of what is left that a free form must significantly gain before the explanation counts as
@@ -71,9 +73,11 @@ impl Signs {
         match self.kind {
             Kind::Given if !self.at_noise_floor && self.tolerated => Verdict::Adequate,
             _ if self.is_incomplete() => Verdict::Unexplained,
+            // Something is left, and what would have explained it may not have been tried.
+            Kind::Given if !self.is_examined && !self.at_noise_floor => Verdict::Unexplained,
             Kind::Given => Verdict::Nominal,
             _ if self.placebo_ranks => Verdict::Unexplained,
-            _ if self.rivals => Verdict::Ambiguous,
+            _ if self.rivals || !self.is_examined => Verdict::Ambiguous,
             Kind::Values => Verdict::WrongValue,
             Kind::Effects => Verdict::Named,
         }

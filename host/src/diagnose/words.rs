@@ -51,9 +51,13 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
         }
         Verdict::WrongValue => wrong_values(&diagnosis.wrong_values),
         Verdict::Named => format!("The model lacks {names}."),
+        Verdict::Ambiguous if diagnosis.alternatives.is_empty() => unrivalled(diagnosis),
         Verdict::Ambiguous => rivals(diagnosis),
         Verdict::Unexplained if diagnosis.effects.is_empty() => {
             match diagnosis.wrong_values.as_slice() {
+                [] if !diagnosis.left_out.is_empty() => {
+                    "Something is missing, and what was tried so far does not explain it.".into()
+                }
                 [] => one_sided::headline(diagnosis).unwrap_or_else(|| {
                     "Something is missing, and no known effect explains it.".into()
                 }),
@@ -72,6 +76,13 @@ pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
         }
         Verdict::Unfit => "These data can't answer the question.".into(),
     }
+}
+
+/// An explanation without a rival among all that was tried, of a diagnosis that was ended before
+/// all was.
+fn unrivalled(diagnosis: &Diagnosis) -> String {
+    let first = explained_by(&diagnosis.effects, &diagnosis.wrong_values);
+    format!("Explained by {first}; what was not tried may explain it as well.")
 }
 
 /// "Your value of link1.mass_kg is wrong: 0.2 -> 0.246 kg (0.244 to 0.248)."
@@ -219,7 +230,7 @@ fn error_line(diagnosis: &Diagnosis) -> String {
         );
     }
     let with = match diagnosis.verdict {
-        Verdict::Ambiguous => "With the first of them the",
+        Verdict::Ambiguous if !diagnosis.alternatives.is_empty() => "With the first of them the",
         _ => "The",
     };
     let changes = match error.after_rad < error.before_rad {
@@ -233,6 +244,16 @@ fn error_line(diagnosis: &Diagnosis) -> String {
 }
 
 fn next(diagnosis: &Diagnosis) -> Vec<String> {
+    let holdout = held_out(diagnosis).0;
+    let search_on = (!diagnosis.left_out.is_empty())
+        .then(|| format!("Search to the end: handstand diagnose {MODEL} {LOGS}{holdout}"));
+    search_on
+        .into_iter()
+        .chain(after_verdict(diagnosis))
+        .collect()
+}
+
+fn after_verdict(diagnosis: &Diagnosis) -> Vec<String> {
     match diagnosis.verdict {
         Verdict::Named => commands(diagnosis),
         Verdict::Ambiguous if diagnosis.effects.is_empty() => {

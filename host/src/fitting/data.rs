@@ -5,6 +5,7 @@ mod signals;
 use super::assumed::{AssumedStates, assumed};
 use super::cut::{cut, cut_evenly};
 use super::growth::stable_horizon;
+use super::halt::Halt;
 use super::horizon::{Horizon, Window};
 use super::node::{Node, StartGuess};
 use super::student::quantile_975;
@@ -36,6 +37,8 @@ pub struct FitData {
     stable: Vec<Horizon>,
     /// Per motion: guessed states of the joints whose angle is not measured.
     assumed: Vec<AssumedStates>,
+    /// What ends fits to these data before they are done.
+    halt: Halt,
 }
 
 impl FitData {
@@ -84,7 +87,21 @@ impl FitData {
             rate_joints,
             stable,
             assumed,
+            halt: Halt::default(),
         }
+    }
+
+    /// The same data, all of whose runs this ends.
+    pub(crate) fn halted_by(self, halt: &Halt) -> FitData {
+        FitData {
+            halt: halt.clone(),
+            ..self
+        }
+    }
+
+    /// What ends fits to these data.
+    pub(crate) fn halt(&self) -> &Halt {
+        &self.halt
     }
 
     /// The same motions with the weights of others: those that decide on a fit are weighted as
@@ -151,6 +168,7 @@ impl FitData {
             rate_joints: self.rate_joints.clone(),
             stable: kept.iter().map(|&m| self.stable[m]).collect(),
             assumed: kept.iter().map(|&m| self.assumed[m].clone()).collect(),
+            halt: self.halt.clone(),
         }
     }
 

@@ -13,8 +13,8 @@ use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::horizon::Horizon;
 use super::solve::fit;
-use super::staged::fit_staged;
 use super::step_size::coarsened;
+use super::ways::best_fit;
 use crate::error::Result;
 use crate::log::init::Draft;
 use crate::log::{LogRequest, Motion, excerpts, read};
@@ -105,9 +105,7 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     };
     begun.iter_mut().for_each(|model| model.angle_zero = *zero);
     begun.push(best.model);
-    let fitted = begun
-        .par_iter()
-        .map(|model| fit_staged(model, &free, &data));
+    let fitted = begun.par_iter().map(|model| best_fit(model, &free, &data));
     let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return Ok(());
     };
@@ -290,7 +288,7 @@ fn told_by(
     let mut model = begun.clone();
     let mut levers = 0;
     loop {
-        let found = fit_staged(&model, &free, data);
+        let found = best_fit(&model, &free, data);
         // Less inertia than the mass has about its joint: its lever is shorter than guessed.
         if levers < LEVERS
             && let Some(link) = too_inert(&found)

@@ -38,8 +38,24 @@ impl fmt::Display for FittedValue {
 /// The fitted values with intervals by profile likelihood, and their correlation matrix. Where the
 /// data do not determine the values there is no matrix, and the bounds stand for the intervals.
 pub fn fitted_values(fit: &Fit, data: &FitData) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
+    with_intervals(fit, data, |local| profile_intervals(fit, data, &local))
+}
+
+/// The same with the intervals that the derivatives give, without a simulation.
+pub(crate) fn locally_fitted_values(
+    fit: &Fit,
+    data: &FitData,
+) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
+    with_intervals(fit, data, |local| local)
+}
+
+fn with_intervals(
+    fit: &Fit,
+    data: &FitData,
+    widened: impl FnOnce(Vec<Interval>) -> Vec<Interval>,
+) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
     let (intervals, correlation) = match intervals(fit, data) {
-        Some((local, correlation)) => (profile_intervals(fit, data, &local), Some(correlation)),
+        Some((local, correlation)) => (widened(local), Some(correlation)),
         None => {
             let bounds = fit.free.iter().map(|path| path.bounds(&fit.model));
             let unknown = bounds.map(|(low, high)| Interval {

@@ -92,6 +92,7 @@ fn predicted_seen(
     motion: usize,
     mut sees: impl FnMut(&Memory),
 ) -> Vec<Vec<f64>> {
+    data.halt().begin_run();
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
     let mut memory = Memory::default();

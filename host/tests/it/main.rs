@@ -16,6 +16,7 @@ mod deploy;
 #[cfg(unix)]
 mod dynamixel_sdk;
 mod each;
+mod ended;
 mod examples;
 #[cfg(unix)]
 mod flash;

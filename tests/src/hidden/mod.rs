@@ -15,6 +15,7 @@ mod score;
 mod tally;
 mod text;
 mod trial;
+mod within;
 
 pub use case::{Case, Truth};
 pub use detection::{DetectionLimit, Faintest, detection_limit, limits_table};
@@ -25,6 +26,7 @@ pub use robot::ROBOT_KINDS;
 pub use tally::{EffectRow, FamilyRow, Share, Tally};
 pub use text::{line, misses, tables};
 pub use trial::try_case;
+pub use within::{Timed, Within, try_within};
 
 use rayon::ThreadPoolBuilder;
 use std::path::Path;

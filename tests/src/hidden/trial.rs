@@ -89,7 +89,7 @@ fn diagnosed(case: &Case, files: &Files) -> handstand::Result<Outcome> {
     })
 }
 
-fn motions(model: &Model, logs: &[PathBuf]) -> handstand::Result<Vec<Motion>> {
+pub(super) fn motions(model: &Model, logs: &[PathBuf]) -> handstand::Result<Vec<Motion>> {
     let requests: Vec<LogRequest> = logs.iter().cloned().map(LogRequest::whole).collect();
     read(&requests, &model.log)
 }

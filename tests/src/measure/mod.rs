@@ -19,6 +19,7 @@ mod scatter;
 mod spoiled;
 #[cfg(unix)]
 mod virtual_cm5;
+mod within;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -39,6 +40,8 @@ enum Chore {
     Hidden(hidden::Args),
     /// Measure how weak an effect may be and still be named
     Detection(detection::Args),
+    /// Measure whether a limited time gives the verdict of the whole search
+    Within(within::Args),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
     Next(next::Args),
     /// Walk the README's path on drawn rigs
@@ -72,6 +75,7 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Detection(args) => detection::run(args),
+            Chore::Within(args) => within::run(args),
             Chore::Next(args) => next::run(args),
             Chore::FirstHour(args) => first_hour::run(args),
             Chore::Real(args) => real::run(args),

@@ -65,6 +65,8 @@ enum Chore {
     Spoiled(Words),
     /// Offer the firmware, in simavr or in process, as a serial port
     Virtual(Words),
+    /// Measure whether a limited time gives a diagnosis the verdict of the whole search
+    Within(Words),
 }
 
 /// What the measuring program reads for itself.
@@ -101,6 +103,7 @@ fn main() -> ExitCode {
         Chore::RobotDemo(words) => ("robot-demo", words),
         Chore::Spoiled(words) => ("spoiled", words),
         Chore::Virtual(words) => ("virtual", words),
+        Chore::Within(words) => ("within", words),
     };
     measure(name, &words.words)
 }

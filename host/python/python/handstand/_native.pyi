@@ -164,6 +164,7 @@ def diagnose(
     tolerance_rad: float | None = None,
     horizon_s: _Horizon | None = None,
     trust_log: bool = False,
+    within_s: float | None = None,
     progress: _Progress | None = None,
 ) -> Diagnosis: ...
 def add(

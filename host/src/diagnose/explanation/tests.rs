@@ -1,4 +1,5 @@
 use super::*;
+use crate::diagnose::SearchEnded;
 use crate::diagnose::search::tests::{candidate, evaluator, fitted};
 
 /// What was found beside the effect that is missing.
@@ -55,12 +56,14 @@ fn verdict_of(
         evaluator,
         tried,
         explanation,
-        equivalents,
+        equivalents: equivalents.to_vec(),
         placebos,
         residual_structure: None,
         per_motion_reduction: None,
         folds: Vec::new(),
         seed: 0,
+        ended: SearchEnded::Complete,
+        left_out: Vec::new(),
     };
     evidence.verdict(&evidence.rivals())
 }

@@ -1,8 +1,9 @@
 use super::*;
 use crate::challenge::{Bench, Motions, bench};
 use crate::diagnose::pipeline::Searched;
+use crate::diagnose::progress::Course;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use crate::fitting::{Fit, Horizon, fit_start_states, stated};
+use crate::fitting::{Candidate, Fit, Horizon, fit_start_states, stated};
 use crate::log::{LogRequest, Motion, read};
 use crate::model::Model;
 use std::path::Path;
@@ -45,7 +46,12 @@ pub(in crate::diagnose) fn evaluator(seed: u64, kinds: &[&'static str]) -> Evalu
 pub(in crate::diagnose) fn evaluator_of(bench: &Bench) -> Evaluator<'static> {
     let (model, training, held_out) = recorded(bench);
     let options = DiagnoseOptions::default();
-    Evaluator::new(&model, training, held_out, &options, REACH, &|_| ())
+    Evaluator::new(&model, training, held_out, &options, REACH, silent())
+}
+
+/// A course that nobody hears of.
+pub(in crate::diagnose) fn silent() -> Course<'static> {
+    Course::new(&DiagnoseOptions::default(), &|_| ())
 }
 
 /// Without friction this arm whirls; beside viscous friction, Stribeck's at its lowest speed, which
@@ -86,7 +92,7 @@ pub(in crate::diagnose) fn fitted<const N: usize>(
 }
 
 /// All effects of the library but these.
-fn all_but(kinds: &[&str]) -> Vec<String> {
+pub(super) fn all_but(kinds: &[&str]) -> Vec<String> {
     let ids = crate::effects::EFFECTS.iter().map(|e| e.info().id);
     ids.filter(|id| !kinds.contains(id))
         .map(String::from)
@@ -122,10 +128,13 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
 
     assert_eq!(pair.names(), ["viscous@1", "cogging@1"]);
     assert!(!pair.evaluation.as_ref().unwrap().significant);
-    let mut sizes = [Vec::new(), vec![pair]];
-    let left = evaluator.pruned(&mut sizes, &mut Vec::new()).unwrap();
-    assert_eq!(left.names(), ["viscous@1"]);
-    let alone: Vec<_> = sizes[0].iter().map(Hypothesis::names).collect();
+    let mut found = Found {
+        sizes: vec![Vec::new(), vec![pair]],
+        ..Found::default()
+    };
+    evaluator.prune(&mut found);
+    assert_eq!(found.best.unwrap().names(), ["viscous@1"]);
+    let alone: Vec<_> = found.sizes[0].iter().map(Hypothesis::names).collect();
     assert_eq!(alone, [["cogging@1"], ["viscous@1"]]);
 }
 
@@ -173,7 +182,7 @@ fn the_search_takes_windows_that_the_model_follows() {
     let options = DiagnoseOptions::default();
     let horizon = |model: &Model, reach| {
         let all = training.clone();
-        let evaluator = Evaluator::new(model, all, Vec::new(), &options, reach, &|_| ());
+        let evaluator = Evaluator::new(model, all, Vec::new(), &options, reach, silent());
         evaluator.search_horizon
     };
     assert_eq!(horizon(&model, Reach::Everything), Horizon::Seconds(1.0));
@@ -328,7 +337,7 @@ fn a_second_search_explains_what_the_first_does_not() {
     };
     let first = {
         let (training, held_out) = (training.clone(), held_out.clone());
-        let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, &|_| ());
+        let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, silent());
         Searched::by(evaluator)
     };
     assert!(!first.is_explained());
@@ -383,7 +392,7 @@ fn a_delay_is_found_where_logs_begin_with_the_first_command() {
 fn held_out_motions_tell_places_on_one_stair_apart() {
     let (model, others, one) = arm(17, &["fold_back"]);
     let options = DiagnoseOptions::default();
-    let evaluator = Evaluator::new(&model, one, others, &options, REACH, &|_| ());
+    let evaluator = Evaluator::new(&model, one, others, &options, REACH, silent());
     let mut set = fitted(&evaluator, &["fold_back"], [&[0.4833, 0.1109, 0.303]]);
     evaluator.evaluate(&mut set);
     let mut fit = set.fit().clone();

@@ -15,6 +15,7 @@ const FOUND: Signs = Signs {
     worst_fold: 1.0,
     placebo_ranks: false,
     rivals: false,
+    is_examined: true,
 };
 /// The same with something left above the noise.
 const ABOVE: Signs = Signs {
@@ -206,4 +207,31 @@ fn a_law_has_the_same_values_in_all_motions() {
         .verdict(),
         Verdict::Named
     );
+}
+
+/// What was not examined may contradict: nothing is named alone, and nothing nominal, but what
+/// leaves only noise.
+#[test]
+fn what_was_not_examined_is_not_claimed() {
+    let unexamined = |signs: Signs| Signs {
+        is_examined: false,
+        ..signs
+    };
+    assert_eq!(unexamined(FOUND).verdict(), Verdict::Ambiguous);
+    let values = Signs {
+        kind: Kind::Values,
+        ..FOUND
+    };
+    assert_eq!(unexamined(values).verdict(), Verdict::Ambiguous);
+    let given = Signs {
+        kind: Kind::Given,
+        ..ABOVE
+    };
+    assert_eq!(given.verdict(), Verdict::Nominal);
+    assert_eq!(unexamined(given).verdict(), Verdict::Unexplained);
+    let noise = Signs {
+        kind: Kind::Given,
+        ..FOUND
+    };
+    assert_eq!(unexamined(noise).verdict(), Verdict::Nominal);
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::diagnose::Alternative;
+use crate::diagnose::{Alternative, SearchEnded};
 use crate::fitting::{ErrorReduction, FittedValue};
 use crate::model::MeasuredSignal;
 
@@ -64,6 +64,8 @@ pub(in crate::diagnose) fn said(
         horizon_s: None,
         shorter_step_s: None,
         windows: Vec::new(),
+        search_ended: SearchEnded::Complete,
+        left_out: Vec::new(),
     };
     complete(&mut diagnosis);
     diagnosis
@@ -322,4 +324,33 @@ fn the_same_in_other_words_is_told_and_parted_by_nothing() {
         .iter()
         .find(|line| line.contains("cannot tell"));
     assert_eq!(cannot, None);
+}
+
+/// An explanation that nothing rivals in a search that was ended is not called one of several.
+#[test]
+fn what_a_search_that_was_ended_has_found_is_told_as_that() {
+    let mut ended = said(Verdict::Ambiguous, vec![effect("coulomb", Some(1))], vec![]);
+    ended.left_out = vec!["sets of two effects".into()];
+    complete(&mut ended);
+    assert_eq!(
+        ended.summary[0],
+        "Explained by Coulomb friction at joint 1; what was not tried may explain it as well."
+    );
+    assert!(
+        ended
+            .summary
+            .iter()
+            .any(|line| line.starts_with("The error on held-out motions falls"))
+    );
+    assert_eq!(
+        ended.next[0],
+        "Search to the end: handstand diagnose MODEL LOG... --holdout HELD_OUT..."
+    );
+    let mut nothing = said(Verdict::Unexplained, vec![], vec![]);
+    nothing.left_out = ended.left_out;
+    complete(&mut nothing);
+    assert_eq!(
+        nothing.summary[0],
+        "Something is missing, and what was tried so far does not explain it."
+    );
 }

@@ -1,10 +1,9 @@
 //! Long work of a session: one at a time, watched and stopped from any page.
 
 use crate::error::Error;
-use crate::fitting::Progress;
+use crate::fitting::{Abandoned, Progress, StopSwitch};
 use serde::Serialize;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use tokio::sync::watch;
 
 /// How far the work has come.
@@ -42,14 +41,11 @@ impl JobState {
     }
 }
 
-/// What unwinds the work when it is stopped.
-struct Stopped;
-
 /// The place of a session's work.
 #[derive(Debug)]
 pub struct JobSlot {
     state: watch::Sender<JobState>,
-    stop: Mutex<Arc<AtomicBool>>,
+    stop: Mutex<StopSwitch>,
 }
 
 impl Default for JobSlot {
@@ -65,15 +61,15 @@ impl Default for JobSlot {
 #[derive(Debug, Clone)]
 pub struct JobReport {
     state: watch::Sender<JobState>,
-    stop: Arc<AtomicBool>,
+    stop: StopSwitch,
 }
 
 impl JobReport {
     /// Tells. Where the work is to stop it does not return: it unwinds, past searches that hold
     /// nothing which outlives them, to [`JobSlot::run`].
     pub fn tell(&self, what: &str, done: usize, total: usize) {
-        if self.stop.load(Ordering::Relaxed) {
-            std::panic::resume_unwind(Box::new(Stopped));
+        if self.stop.is_abandoned() {
+            std::panic::resume_unwind(Box::new(Abandoned));
         }
         self.state.send_replace(JobState::Running {
             what: what.to_string(),
@@ -84,7 +80,15 @@ impl JobReport {
 
     /// Tells what a fit or a diagnosis does.
     pub fn hear(&self, progress: Progress) {
-        self.tell(&progress.what, progress.done, progress.total);
+        let best = progress.best.as_ref();
+        let best = best.map_or(String::new(), |best| format!(" (best so far {best})"));
+        let what = format!("{}{best}", progress.what);
+        self.tell(&what, progress.done, progress.total);
+    }
+
+    /// What ends work that looks at it.
+    pub fn stop_switch(&self) -> &StopSwitch {
+        &self.stop
     }
 }
 
@@ -102,7 +106,7 @@ impl JobSlot {
     /// Asks the work to stop.
     pub fn stop(&self) {
         let stop = self.stop.lock().unwrap_or_else(PoisonError::into_inner);
-        stop.store(true, Ordering::Relaxed);
+        stop.abandon();
     }
 
     /// Takes the place for work that [`JobSlot::run`] does; `None` while other work runs.
@@ -120,7 +124,7 @@ impl JobSlot {
             free
         });
         begun.then(|| {
-            *stop = Arc::default();
+            *stop = StopSwitch::default();
             JobReport {
                 state: self.state.clone(),
                 stop: stop.clone(),
@@ -149,7 +153,7 @@ impl JobSlot {
                 error: error.to_string(),
                 remedy: error.remedy().unwrap_or_default().into_owned(),
             },
-            Err(thrown) if thrown.is::<Stopped>() => JobState::Stopped,
+            Err(thrown) if thrown.is::<Abandoned>() => JobState::Stopped,
             Err(_) => JobState::Failed {
                 error: "this is a bug in the program, not in your files".into(),
                 remedy: "please report it".into(),

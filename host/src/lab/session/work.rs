@@ -23,6 +23,7 @@ impl LabSession {
         let model = self.model_at(&begun)?;
         let options = DiagnoseOptions {
             horizon: begun.window.by_hand(),
+            stop: report.stop_switch().clone(),
             ..DiagnoseOptions::default()
         };
         let (path, logs) = (model_file(begun.current), self.log_set(&begun));

@@ -6,7 +6,7 @@ use crate::compare::{
 };
 use crate::diagnose::{
     Alternative, BudgetShare, BudgetedPart, Diagnosis, FittedEffect, MotionError,
-    ResidualStructure, RuledOut, Verdict, WrongValue,
+    ResidualStructure, RuledOut, SearchEnded, Verdict, WrongValue,
 };
 use crate::fitting::{ErrorReduction, FittedValue};
 use crate::model::MeasuredSignal;
@@ -259,6 +259,8 @@ pub(in crate::report) fn diagnosis() -> Diagnosis {
         horizon_s: None,
         shorter_step_s: None,
         windows: Vec::new(),
+        search_ended: SearchEnded::Complete,
+        left_out: Vec::new(),
     }
 }
 
