@@ -1,11 +1,13 @@
-//! Control tables, one row per register: the AX-12's here, those of X series and MX(2.0) in [`x`],
-//! the models that have them in [`models`]. Source: ROBOTIS AX-12 e-manual.
+//! Control tables, one row per register: the AX-12's here, those of X series and MX(2.0) in [`x`];
+//! the models that have them in [`one`] (Protocol 1.0) and [`models`] (2.0). Source: ROBOTIS AX-12
+//! e-manual.
 //!
 //! The AX-12's rows are as narrow as its protocol, for the CM-5's firmware holds them; a program on
 //! the PC takes all rows as [`Item`]s.
 
 mod item;
 pub mod models;
+pub mod one;
 pub mod x;
 
 pub use item::{

@@ -67,6 +67,12 @@ impl Signed {
     /// Load and wheel-mode command: one code as a share of full output, 1 / 1023.
     pub const OUTPUT_LSB: f64 = 1.0 / 1023.0;
 
+    /// The value of a code that the register can have, as [`Signed::get`]; none of one with bits
+    /// above the direction's, which servos report now and then.
+    pub fn checked(self) -> Option<i16> {
+        (self.0 < 0x800).then(|| self.get())
+    }
+
     /// Counter-clockwise positive, -1023..=1023.
     pub fn get(self) -> i16 {
         let magnitude = (self.0 & 0x3ff) as i16;
@@ -180,6 +186,8 @@ mod tests {
             assert_eq!(Signed::new(value).get(), value);
         }
         assert_eq!(Signed::new(-1).0, 0x401);
+        assert_eq!(Signed(2047).checked(), Some(-1023));
+        assert_eq!([3154, 4015].map(|code| Signed(code).checked()), [None; 2]);
         assert_eq!(Signed::new(i16::MIN).get(), -1023);
     }
 

@@ -255,7 +255,7 @@ fn put(line: &mut VecDeque<(u64, u8)>, from_ns: u64, replies: &[Reply]) {
         several => {
             let late = |reply: &Reply| sent(reply, from_ns + late_ns(reply.serial), free_ns);
             let all = several.iter().flat_map(late);
-            line.extend(received(&all.collect::<Vec<_>>()));
+            line.extend(received(&all.collect::<Vec<_>>(), BYTE_NS / 10));
         }
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Where the manual does not say what servos do, they do what is hardest for the host: behind a
 //! servo that is missing in a sync read the others stay silent, and only packets that name a servo
-//! restart its bus watchdog.
+//! restart its bus watchdog. Two of one id answer at once, and their answers collide.
 
+use super::collision::received;
 use super::x_servo::XServo;
 use handstand_shared::control_table::x::{RETURN_DELAY, STATUS_LEVEL};
 use handstand_shared::dynamixel2::*;
@@ -123,97 +124,120 @@ impl Talk<'_> {
         }
     }
 
-    fn find(&mut self, id: u8) -> Option<&mut XServo> {
-        let (baud, now_ns) = (self.baud, self.now_ns);
-        let servos = self.servos.iter_mut();
-        let mut there = servos.filter(|servo| is_listening(servo, baud, now_ns));
-        there.find(|servo| servo.id() == id)
+    /// The servos that hear what this id is told; two of one id are two.
+    fn listening(&self, id: u8) -> Vec<usize> {
+        let servos = self.servos.iter().enumerate();
+        let hears = |servo: &XServo| is_listening(servo, self.baud, self.now_ns);
+        let there = servos.filter(|(_, servo)| servo.id() == id && hears(servo));
+        there.map(|(place, _)| place).collect()
     }
 
     fn write_to(&mut self, id: u8, address: u16, data: &[u8]) {
-        let now_ns = self.now_ns;
-        if let Some(servo) = self.find(id) {
-            servo.heard_ns = now_ns;
-            servo.write(now_ns, address, data);
+        for place in self.listening(id) {
+            self.servos[place].heard_ns = self.now_ns;
+            self.servos[place].write(self.now_ns, address, data);
         }
     }
 
     fn answer_one(&mut self, id: u8, request: Request) {
-        let now_ns = self.now_ns;
-        let Some(servo) = self.find(id) else {
-            return;
-        };
-        let level = servo.get(STATUS_LEVEL);
-        if servo.faults.corrupts_request() {
-            let error = servo.error_byte(3);
-            return self.send_status(id, error, &[]);
+        let mut answers = Vec::new();
+        for place in self.listening(id) {
+            let servo = &mut self.servos[place];
+            let level = servo.get(STATUS_LEVEL);
+            if servo.faults.corrupts_request() {
+                let error = servo.error_byte(3);
+                answers.extend(self.status(place, id, error, &[]));
+                continue;
+            }
+            // It may be silent from now on, as behind a write into EEPROM, but answers that.
+            let ((code, data), from_level) = servo.execute(self.now_ns, request);
+            let error = servo.error_byte(code);
+            if level >= from_level {
+                answers.extend(self.status(place, id, error, &data));
+            }
         }
-        let ((code, data), from_level) = servo.execute(now_ns, request);
-        let error = servo.error_byte(code);
-        if level >= from_level {
-            self.send_status(id, error, &data);
-        }
+        self.put(&answers);
     }
 
     /// Answers of several servos in turn, up to the first that is missing.
     fn read_all(&mut self, fast: bool, items: impl Iterator<Item = (u8, u16, u16)>) {
         let items: Vec<(u8, u16, u16)> = items.collect();
-        let now_ns = self.now_ns;
         let mut parts = Vec::new();
+        let mut twins = Vec::new();
         for (id, address, count) in &items {
-            let Some(servo) = self.find(*id).filter(|servo| servo.get(STATUS_LEVEL) > 0) else {
+            let mut there = self.listening(*id);
+            there.retain(|place| self.servos[*place].get(STATUS_LEVEL) > 0);
+            if there.is_empty() {
                 break;
-            };
-            servo.heard_ns = now_ns;
-            servo.measure();
-            let (code, mut data) = servo.read(*address, *count);
-            let error = servo.error_byte(code);
-            match fast {
-                false => self.send_status(*id, error, &data),
-                true => {
+            }
+            let mut answers = Vec::new();
+            for (nth, place) in there.iter().enumerate() {
+                let servo = &mut self.servos[*place];
+                servo.heard_ns = self.now_ns;
+                servo.measure();
+                let (code, mut data) = servo.read(*address, *count);
+                let error = servo.error_byte(code);
+                if fast {
                     // The joint status has a place for its bytes, whatever it says.
                     data.resize(usize::from(*count), 0);
-                    parts.push((*id, error, data));
+                    let own = if nth == 0 { &mut parts } else { &mut twins };
+                    own.push((*place, *id, error, data));
+                } else {
+                    answers.extend(self.status(*place, *id, error, &data));
                 }
             }
+            self.put(&answers);
         }
         if fast {
             let announced = items.iter().map(|(.., count)| usize::from(*count) + 4);
-            self.send_fast(announced.sum(), &parts);
+            self.send_fast(announced.sum(), &parts, &twins);
         }
     }
 
-    fn send_fast(&mut self, announced: usize, parts: &[(u8, ErrorByte, Vec<u8>)]) {
-        let written = parts.iter().map(|(id, error, data)| FastPart {
-            id: *id,
-            error: *error,
-            data,
-        });
-        let mut out = [0; MAX_PACKET];
-        let Some(length) = emit_fast_status(&mut out, announced, &written.collect::<Vec<_>>())
-        else {
+    /// One packet of all parts; those of `twins`, the second servos of their ids, spoil it.
+    fn send_fast(&mut self, announced: usize, parts: &[FastAnswer], twins: &[FastAnswer]) {
+        let Some(first) = parts.first().map(|(place, ..)| *place) else {
             return;
         };
-        let Some(first) = parts.first().and_then(|(id, ..)| self.find(*id)) else {
-            return;
-        };
-        let wait_ns = delay_ns(first);
-        // The first servo's faults are the packet's.
-        let Some((bytes, late_ns)) = first.faults.pass_as(out[..length].to_vec(), |_| ()) else {
-            return;
-        };
-        self.put(&bytes, wait_ns + late_ns);
+        let mut answers = Vec::new();
+        for with_twins in [false, true] {
+            if with_twins && twins.is_empty() {
+                continue;
+            }
+            let written = parts.iter().map(|part| {
+                let twin = twins.iter().find(|twin| with_twins && twin.1 == part.1);
+                let (_, id, error, data) = twin.unwrap_or(part);
+                FastPart {
+                    id: *id,
+                    error: *error,
+                    data,
+                }
+            });
+            let written: Vec<FastPart> = written.collect();
+            let mut out = [0; MAX_PACKET];
+            let Some(length) = emit_fast_status(&mut out, announced, &written) else {
+                return;
+            };
+            let servo = &mut self.servos[first];
+            let wait_ns = delay_ns(servo);
+            // The first servo's faults are the packet's.
+            if let Some((bytes, late_ns)) = servo.faults.pass_as(out[..length].to_vec(), |_| ()) {
+                let wait_ns = wait_ns + late_ns;
+                answers.push(Answer {
+                    bytes,
+                    wait_ns,
+                    place: if with_twins { twins[0].0 } else { first },
+                });
+            }
+        }
+        self.put(&answers);
     }
 
-    fn send_status(&mut self, id: u8, error: ErrorByte, data: &[u8]) {
+    /// The status packet of the servo at this place; none, and the line was busy, where it is lost.
+    fn status(&mut self, place: usize, id: u8, error: ErrorByte, data: &[u8]) -> Option<Answer> {
         let mut out = [0; MAX_PACKET];
-        let Some(length) = emit_status(&mut out, id, error, data) else {
-            return;
-        };
-        // It may be silent from now on, as behind a write into EEPROM, but answers that.
-        let Some(servo) = self.servos.iter_mut().find(|servo| servo.id() == id) else {
-            return;
-        };
+        let length = emit_status(&mut out, id, error, data)?;
+        let servo = &mut self.servos[place];
         let wait_ns = delay_ns(servo);
         let another = |answer: &mut Vec<u8>| {
             let mut out = [0; MAX_PACKET];
@@ -224,21 +248,64 @@ impl Talk<'_> {
         };
         let sent = servo.faults.pass_as(out[..length].to_vec(), another);
         match sent {
-            Some((bytes, late_ns)) => self.put(&bytes, wait_ns + late_ns),
+            Some((bytes, late_ns)) => Some(Answer {
+                bytes,
+                wait_ns: wait_ns + late_ns,
+                place,
+            }),
             // Lost on its way to the controller; the line was busy all the same.
-            None => self.free_ns += wait_ns + byte_ns(self.baud) * length as u64,
+            None => {
+                self.free_ns += wait_ns + byte_ns(self.baud) * length as u64;
+                None
+            }
         }
     }
 
-    fn put(&mut self, bytes: &[u8], wait_ns: u64) {
+    /// Puts answers on the line, from when it is free; several at once collide.
+    fn put(&mut self, answers: &[Answer]) {
         let before_ns = self.line.back().map_or(0, |(end, _)| *end);
-        let mut end_ns = before_ns.max(self.free_ns + wait_ns);
-        for byte in bytes {
-            end_ns += byte_ns(self.baud);
-            self.line.push_back((end_ns, *byte));
+        let (free_ns, byte_ns) = (self.free_ns, byte_ns(self.baud));
+        let first = answers.iter().map(|answer| answer.place).min();
+        let begins = |answer: &Answer| {
+            let late_ns = match Some(answer.place) == first {
+                true => 0,
+                false => twin_late_ns(answer.place, byte_ns),
+            };
+            let begin_ns = before_ns.max(free_ns + answer.wait_ns) + late_ns;
+            let bytes = answer.bytes.clone().into_iter().zip(0..);
+            bytes.map(move |(byte, nth): (u8, u64)| (begin_ns + nth * byte_ns, byte))
+        };
+        let sent: Vec<(u64, u8)> = answers.iter().flat_map(begins).collect();
+        let heard: Vec<(u64, u8)> = match answers {
+            [_] => sent
+                .iter()
+                .map(|(begin, byte)| (begin + byte_ns, *byte))
+                .collect(),
+            _ => received(&sent, byte_ns / 10),
+        };
+        if let Some((end_ns, _)) = heard.last() {
+            self.free_ns = *end_ns;
         }
-        self.free_ns = end_ns;
+        self.line.extend(heard);
     }
+}
+
+/// Bytes of a servo's answer.
+struct Answer {
+    bytes: Vec<u8>,
+    wait_ns: u64,
+    /// Which servo's.
+    place: usize,
+}
+
+/// A servo's part of a joint status: its place, id, error and data.
+type FastAnswer = (usize, u8, ErrorByte, Vec<u8>);
+
+/// How much later a servo answers than another one of its id: no two clocks are the same. Scattered
+/// by its place, from a bit on and below a byte's time.
+fn twin_late_ns(place: usize, byte_ns: u64) -> u64 {
+    let bit_ns = byte_ns / 10;
+    bit_ns * 7 / 10 + (place as u64 + 1) * 2_654_435_761 % (byte_ns - bit_ns)
 }
 
 /// A byte of 8N1, ns.

@@ -27,6 +27,7 @@ mod setup;
 
 use super::{ExitStatus, Talk};
 use handstand::Result;
+pub use scan::garbled_words;
 
 /// What to do with servos.
 #[derive(Debug, clap::Subcommand)]

@@ -48,13 +48,15 @@ pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
         !interrupt.has_come()
     };
     let (rounds, period_us) = (args.rounds, args.period_ms * 1e3);
-    let ids = &args.robot.ids.0;
+    let mut link = args.robot.port.open()?;
+    let ids = args.robot.chosen(&mut link, talk)?;
+    let ids = &ids[..];
     let budget = if args.robot.stream {
-        let mut stream = Stream::new(args.robot.port.open()?, ids)?;
+        let mut stream = Stream::new(link, ids)?;
         let trip = RoundTrip::of_stream(&mut stream)?;
         trip.budget(&mut stream, rounds, period_us, goes_on)
     } else {
-        let mut servos = args.robot.port.servos()?;
+        let mut servos = args.robot.port.on(link);
         let trip = RoundTrip::of_adapter(&mut servos, ids)?;
         if servos.protocol == Some(Protocol::Two) {
             let mut adapter = GroupAdapter::new(servos, ids, Duration::ZERO, false)?;
@@ -65,17 +67,17 @@ pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
                 ..budget
             })
         } else {
-            let mut adapter = Adapter::new(servos, ids, Duration::ZERO);
+            let mut adapter = Adapter::new(servos, ids, Duration::ZERO)?;
             trip.budget(&mut adapter, rounds, period_us, goes_on)
         }
     };
     drop(bar);
     let answer = budget?;
-    talk.result(&answer, || text(&answer, args))?;
+    talk.result(&answer, || text(&answer, ids.len(), args))?;
     Ok(ExitStatus::answer(answer.fits))
 }
 
-fn text(answer: &LatencyBudget, args: &LatencyArgs) -> String {
+fn text(answer: &LatencyBudget, servos: usize, args: &LatencyArgs) -> String {
     let times = |times: &Quantiles| {
         format!(
             "{:.0} us median, {:.0} to {:.0}, 99 % below {:.0}",
@@ -106,7 +108,7 @@ fn text(answer: &LatencyBudget, args: &LatencyArgs) -> String {
         answer.line_us,
         answer.bus_us,
         answer.rest_us,
-        args.robot.ids.0.len(),
+        servos,
         times(&answer.round_us),
         answer.missing,
         args.period_ms,

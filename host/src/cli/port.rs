@@ -1,8 +1,10 @@
 //! The port of a command: a serial one, or a simulated one.
 
-use super::simulated;
+use super::bus::garbled_words;
+use super::{Talk, simulated};
 use handstand::deploy::balance::AttitudeSource;
-use handstand::link::{Protocol, Serial, SerialLink, Servos, Tap, ports};
+use handstand::link::record::no_response;
+use handstand::link::{Answering, Protocol, Serial, SerialLink, Servos, Tap, id_ranges, ports};
 use handstand::{Error, Result};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
 use std::path::PathBuf;
@@ -74,7 +76,7 @@ impl Port {
     }
 
     /// Servos on this line, of the protocol that was asked for.
-    pub fn on(&self, link: AnyLink) -> Servos<AnyLink> {
+    pub fn on<L: SerialLink>(&self, link: L) -> Servos<L> {
         let mut servos = Servos::new(link);
         servos.protocol = self.protocol;
         servos
@@ -138,3 +140,47 @@ pub fn id_list(text: &str) -> Result<Ids, String> {
 /// Servo ids.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ids(pub Vec<u8>);
+
+/// Ids that are asked where none are given: those of the Bioloid.
+pub const DEFAULT_IDS: [u8; 18] = [
+    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18,
+];
+
+/// The ids that were given; without, those that `ask` finds among [`DEFAULT_IDS`], which are said.
+///
+/// # Errors
+/// None answers, or the port failed.
+pub fn chosen(
+    given: Option<&Ids>,
+    ask: impl FnOnce() -> Result<Answering>,
+    talk: &Talk,
+) -> Result<Vec<u8>> {
+    if let Some(Ids(ids)) = given {
+        return Ok(ids.clone());
+    }
+    let found = ask()?;
+    let ids = found.ids();
+    say_found(&found, talk);
+    match ids.is_empty() {
+        true => Err(no_response()),
+        false => Ok(ids),
+    }
+}
+
+/// Says in a line each which servos answer, and of which only bytes came.
+pub fn say_found(found: &Answering, talk: &Talk) {
+    let ids = found.ids();
+    if !ids.is_empty() {
+        let (who, verb) = match ids.len() {
+            1 => ("servo", "answers"),
+            _ => ("servos", "answer"),
+        };
+        talk.say(&format!(
+            "{who} {} {verb}, of ids 1-18; --ids names others",
+            id_ranges(&ids)
+        ));
+    }
+    if !found.garbled.is_empty() {
+        talk.say(&garbled_words(&found.garbled));
+    }
+}

@@ -47,8 +47,8 @@ pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
         return convert(args, from, talk);
     }
     let interrupt = Interrupt::listen();
-    let mut source = args.robot.open()?;
-    let mut recorder = RobotRecorder::create(&args.file, &args.robot.ids.0, args.force)?;
+    let (mut source, ids) = args.robot.open(talk)?;
+    let mut recorder = RobotRecorder::create(&args.file, &ids, args.force)?;
     let period_s = args.robot.period().map_or(0.01, |p| p.as_secs_f64());
     let bar = talk.bar((args.seconds.unwrap_or(0.0) / period_s) as u64);
     let recorded = record_samples(
@@ -65,6 +65,9 @@ pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
     );
     drop(bar);
     recorder.finish()?;
+    for remark in source.remarks() {
+        talk.say(&format!("warning: {remark}"));
+    }
     report(args, &recorded?, None, talk)
 }
 

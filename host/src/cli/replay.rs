@@ -16,7 +16,8 @@
 //! without being told): a line that breaks lets the robot down, and any of its buttons stops it.
 //! `--adapter` passes the packets through it instead, and neither does.
 //!
-//! A servo that does not answer ends it before anything moves, with exit code 4; one that falls
+//! A servo that does not answer, takes no positions (wheel mode) or has limits that leave a goal out
+//! ends it before anything moves, with exit code 4. Exit code 1: a servo did not follow. One that falls
 //! silent on the way is warned of, with the share of the samples it missed.
 //!
 //! Servos of Protocol 2.0 stop by their own bus watchdog when the line breaks, unless
@@ -24,16 +25,19 @@
 //!
 //! `--json` prints `way` (`stream` or `adapter`), `watchdog` (whether theirs is on), `samples`,
 //! `seconds`, `tracking_rms_rad` (to the goals sent), `repeat_rms_rad` (to the positions recorded),
-//! `silent` (servos that fell silent: `servo`, `missed_share`), `stopped` (why, or null).
+//! `silent` (servos that fell silent: `servo`, `missed_share`), `not_followed` (servos that stood
+//! where their goals did not: `servo`, `went_rad`, `goals_rad`), `stopped` (why, or null).
 
 use super::flash::agreed;
 use super::interrupt::Interrupt;
+use super::port::Ids;
 use super::robot::RobotArgs;
 use super::{ExitStatus, Talk, show::or_dash};
+use handstand::link::id_ranges;
 use handstand::link::record::{
-    FollowedMotion, GoalMotion, MotionStop, RobotRecorder, SourceKind, follow, read,
+    FollowedMotion, GoalMotion, MotionStop, Recording, RobotRecorder, SourceKind, follow, read,
 };
-use handstand::{Result, output};
+use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -65,10 +69,8 @@ pub struct ReplayArgs {
 
 /// Follows the motion.
 pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
-    let recording = read(&args.motion)?;
+    let recording = chosen(read(&args.motion)?, args)?;
     let motion = GoalMotion::of(&recording, &args.motion)?;
-    let mut robot = args.robot.clone();
-    robot.ids.0 = recording.ids.clone();
     if let Some(file) = &args.record {
         output::vacant(file, args.force)?;
     }
@@ -80,7 +82,8 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     ));
     agreed(args.yes, "Is there room around it?")?;
     let interrupt = Interrupt::listen();
-    let (mut source, way) = robot.open_to_move(args.adapter, !args.no_watchdog)?;
+    let watchdog = !args.no_watchdog;
+    let (mut source, way) = (args.robot).open_to_move(&recording.ids, args.adapter, watchdog)?;
     talk.say(match way {
         SourceKind::Stream => {
             "The CM-5 streams: any of its buttons stops the robot, and so does a dead line."
@@ -107,7 +110,24 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(recorder) = recorder {
         recorder.finish()?;
     }
+    for remark in source.remarks() {
+        talk.say(&format!("warning: {remark}"));
+    }
     report(&followed, &recording.ids, way, talk)
+}
+
+/// The recording of the servos that were named, or of all.
+fn chosen(recording: Recording, args: &ReplayArgs) -> Result<Recording> {
+    let Some(Ids(ids)) = &args.robot.ids else {
+        return Ok(recording);
+    };
+    recording.of_servos(ids).ok_or_else(|| {
+        let (file, own) = (args.motion.display(), id_ranges(&recording.ids));
+        Error::usage(
+            format!("--ids names a servo that {file} has no motion of: it has {own}"),
+            "leave it out of --ids, or leave --ids out to move all",
+        )
+    })
 }
 
 fn report(
@@ -122,6 +142,7 @@ fn report(
         MotionStop::Danger(why) => why,
     });
     let silent = silent(followed, ids);
+    let still = not_followed(followed, ids);
     let data = json!({
         "way": if way == SourceKind::Stream { "stream" } else { "adapter" },
         "watchdog": way == SourceKind::Group { watchdog: true },
@@ -132,6 +153,10 @@ fn report(
         "silent": silent
             .iter()
             .map(|(id, share)| json!({ "servo": id, "missed_share": share }))
+            .collect::<Vec<_>>(),
+        "not_followed": still
+            .iter()
+            .map(|(id, went, wanted)| json!({ "servo": id, "went_rad": went, "goals_rad": wanted }))
             .collect::<Vec<_>>(),
         "stopped": stopped,
     });
@@ -147,13 +172,28 @@ fn report(
             100.0 * share
         ));
     }
+    for (id, went, wanted) in &still {
+        talk.say(&format!(
+            "servo {id} did not follow: it went over {went:.3} rad where its goals go over \
+             {wanted:.3} rad; is it blocked, or its torque limit too low? `handstand bus read {id}`"
+        ));
+    }
     match stopped {
-        None => Ok(ExitStatus::Done),
+        None => Ok(ExitStatus::answer(still.is_empty())),
         Some(why) => {
             talk.say(&format!("stopped, torque is off: {why}"));
             Ok(ExitStatus::Stopped)
         }
     }
+}
+
+/// Servos that did not follow their goals: how far each went and was told to go, rad.
+fn not_followed(followed: &FollowedMotion, ids: &[u8]) -> Vec<(u8, f64, f64)> {
+    let servos = ids.iter().zip(&followed.travels);
+    let still = servos.filter_map(|(id, travel)| Some((*id, travel.not_followed()?)));
+    still
+        .map(|(id, (went, wanted))| (id, went, wanted))
+        .collect()
 }
 
 /// Servos that fell silent, each with the share of the samples that it missed.

@@ -1,8 +1,11 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
-use super::port::{AnyLink, Ids, Port, id_list};
+use super::Talk;
+use super::port::{AnyLink, DEFAULT_IDS, Ids, Port, chosen, id_list};
 use handstand::link::Protocol;
-use handstand::link::record::{SampleSource, SourceKind, SourceOptions, is_cm5, open_source_as};
+use handstand::link::record::{
+    SampleSource, SourceKind, SourceOptions, answering, is_cm5, open_source_as,
+};
 use handstand::{Error, Result};
 use std::time::Duration;
 
@@ -14,9 +17,9 @@ const CM5_PERIOD: Duration = Duration::from_millis(10);
 pub struct RobotArgs {
     #[command(flatten)]
     pub port: Port,
-    /// Servos
-    #[arg(long, default_value = "1-18", value_parser = id_list)]
-    pub ids: Ids,
+    /// Servos; without, those of 1-18 that answer, or of a motion all
+    #[arg(long, value_parser = id_list)]
+    pub ids: Option<Ids>,
     /// Let a CM-5 with Handstand's firmware read them: 100 times a second, whatever --hz says
     #[arg(long)]
     pub stream: bool,
@@ -26,34 +29,49 @@ pub struct RobotArgs {
 }
 
 impl RobotArgs {
-    /// Opens it.
+    /// Opens it; also the servos, which are said where they were not given.
     ///
     /// # Errors
-    /// No port, no firmware, or a rate that is none.
-    pub fn open(&self) -> Result<Box<dyn SampleSource>> {
-        Ok(self.opened(self.port.open()?, self.stream, true)?.0)
+    /// No port, no firmware, no servo, or a rate that is none.
+    pub fn open(&self, talk: &Talk) -> Result<(Box<dyn SampleSource>, Vec<u8>)> {
+        let mut link = self.port.open()?;
+        let ids = self.chosen(&mut link, talk)?;
+        Ok((self.opened(link, &ids, self.stream, true)?.0, ids))
     }
 
-    /// Opens it to move the robot: a CM-5 with Handstand's firmware streams unless `adapter`, for
-    /// as an adapter nothing lets the robot down when the line breaks. Servos of Protocol 2.0 stop
-    /// by themselves then, with their `watchdog`. Also in which way they are reached.
+    /// The servos that were given, or those that answer.
+    ///
+    /// # Errors
+    /// None answers, or the port failed.
+    pub fn chosen(&self, link: &mut AnyLink, talk: &Talk) -> Result<Vec<u8>> {
+        let (streams, protocol) = (self.stream, self.port.protocol());
+        let ask = || answering(link, &DEFAULT_IDS, streams, protocol);
+        chosen(self.ids.as_ref(), ask, talk)
+    }
+
+    /// Opens these servos to move the robot: a CM-5 with Handstand's firmware streams unless
+    /// `adapter`, for as an adapter nothing lets the robot down when the line breaks. Servos of
+    /// Protocol 2.0 stop by themselves then, with their `watchdog`. Also in which way they are
+    /// reached.
     ///
     /// # Errors
     /// As [`RobotArgs::open`].
     pub fn open_to_move(
         &self,
+        ids: &[u8],
         adapter: bool,
         watchdog: bool,
     ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
         let mut link = self.port.open()?;
         let is_two = self.port.protocol() == Some(Protocol::Two);
         let streams = self.stream || (!adapter && !is_two && is_cm5(&mut link)?);
-        self.opened(link, streams, watchdog)
+        self.opened(link, ids, streams, watchdog)
     }
 
     fn opened(
         &self,
         link: AnyLink,
+        ids: &[u8],
         streams: bool,
         watchdog: bool,
     ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
@@ -63,7 +81,7 @@ impl RobotArgs {
             protocol: self.port.protocol(),
             watchdog,
         };
-        open_source_as(link, &self.ids.0, options)
+        open_source_as(link, ids, options)
     }
 
     /// Time between two samples.

@@ -110,9 +110,10 @@ impl<L: SerialLink> Servos<L> {
         let mut found = None;
         let bytes = read_some(self.link(), deadline, |bytes| {
             found = status(protocol, bytes.get(echo..).unwrap_or(&[]), id);
-            matches!(&found, Some((from, reading)) if *from == id && is_answer(reading, count))
+            matches!(&found, Some(it) if it.from == id && is_answer(&it.reading, count))
         })?;
-        match found {
+        self.surplus = found.as_ref().map_or(0, |found| found.behind);
+        match found.map(|found| (found.from, found.reading)) {
             Some((from, reading)) if from == id && reading.error.is_corrupted_request() => {
                 Err(ServoError::CorruptedRequest { id })
             }

@@ -6,6 +6,7 @@ use super::port::{SerialLink, read_some};
 use super::protocol::Protocol;
 use super::reply::{Reading, statuses};
 use super::servo_error::{ServoError, ServoResult};
+use super::servo_rows::Model;
 use super::servos::Servos;
 use super::status_error::StatusError;
 use handstand_shared::dynamixel2::{BROADCAST, HEADER, MAX_PACKET, Request, fast_parts};
@@ -67,7 +68,9 @@ impl<L: SerialLink> Servos<L> {
     fn all_fast(&self, items: &[GroupItem]) -> bool {
         items.iter().all(|item| {
             let known = self.identities.get(&item.id);
-            known.is_some_and(|it| it.model.is_some_and(|m| m.has_fast_read(it.firmware)))
+            known.is_some_and(|it| {
+                matches!(it.model, Some(Model::Two(model)) if model.has_fast_read(it.firmware))
+            })
         })
     }
 

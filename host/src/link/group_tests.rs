@@ -162,5 +162,5 @@ fn reads_are_as_fast_as_the_firmware_allows() {
 #[test]
 fn a_broadcast_ping_finds_all() {
     let mut servos = Servos::new(sim("model=xl430,ids=1-3+7+252"));
-    assert_eq!(servos.ping_all().unwrap(), [1, 2, 3, 7, 252]);
+    assert_eq!(servos.ping_all().unwrap(), (vec![1, 2, 3, 7, 252], 0));
 }

@@ -8,12 +8,15 @@
 
 mod account;
 pub mod boot_loader;
+mod bridge;
 pub mod bring_up;
+mod discover;
 pub mod doctor;
 mod exchange;
 mod fault_log;
 mod faulty;
 mod group_read;
+mod one_servo;
 pub(crate) mod port;
 mod protocol;
 #[cfg(unix)]
@@ -34,9 +37,11 @@ mod tap;
 pub mod virtual_cm5;
 
 pub use account::{account_words, is_let_down};
+pub use discover::{Answering, id_ranges};
 pub use fault_log::{cause_words, fault_log};
 pub use faulty::Faulty;
 pub use group_read::{GroupItem, group_read_bytes};
+pub use one_servo::{OneMode, OneServo};
 pub use port::{LineWriter, SerialLink, read_some};
 pub use protocol::Protocol;
 use protocol::emergency_packet;
@@ -46,7 +51,7 @@ pub use replay::Replay;
 pub use reply::Reading;
 pub use serial::{PERMISSION_REMEDY, Serial, may_open, ports};
 pub use servo_error::{ServoError, ServoResult};
-pub use servo_rows::Identity;
+pub use servo_rows::{Identity, Model};
 pub use servos::Servos;
 pub use session::Session;
 pub use session_error::{SessionError, condition_words, refusal_words};

@@ -19,49 +19,72 @@ pub(super) fn is_answer(reading: &Reading, count: usize) -> bool {
     reading.data.len() == count || (reading.data.is_empty() && reading.error.refuses())
 }
 
+/// A status packet among bytes that came.
+pub(super) struct FoundStatus {
+    /// Who sent it.
+    pub from: u8,
+    /// What it says.
+    pub reading: Reading,
+    /// How many bytes came with it and behind it.
+    pub behind: usize,
+}
+
 /// The status packet of servo `id` in these bytes, or else of another.
-pub(super) fn status(protocol: Protocol, bytes: &[u8], id: u8) -> Option<(u8, Reading)> {
-    let mut found: Option<(u8, Reading)> = None;
-    let mut take = |from: u8, reading: Reading| {
-        if found.as_ref().is_none_or(|(from, _)| *from != id) {
-            found = Some((from, reading));
+pub(super) fn status(protocol: Protocol, bytes: &[u8], id: u8) -> Option<FoundStatus> {
+    let mut found: Option<FoundStatus> = None;
+    let mut take = |from: u8, reading: Reading, behind: usize| {
+        if found.as_ref().is_none_or(|found| found.from != id) {
+            found = Some(FoundStatus {
+                from,
+                reading,
+                behind,
+            });
         }
     };
     match protocol {
         Protocol::One => {
             let mut parser = Parser::<MAX_PACKET>::default();
-            for byte in bytes {
+            for (place, byte) in bytes.iter().enumerate() {
                 if let Some(packet) = parser.push(*byte) {
                     let (from, reading) = of_one(packet);
-                    take(from, reading);
+                    take(from, reading, bytes.len() - place - 1);
                 }
             }
         }
-        Protocol::Two => statuses(bytes).into_iter().for_each(|(from, reading)| {
-            take(from, reading);
-        }),
+        Protocol::Two => (placed_statuses(bytes).into_iter())
+            .for_each(|(from, reading, end)| take(from, reading, bytes.len() - end)),
     }
     found
 }
 
 /// Every status packet of Protocol 2.0 in these bytes.
 pub(super) fn statuses(bytes: &[u8]) -> Vec<(u8, Reading)> {
+    let all = placed_statuses(bytes).into_iter();
+    all.map(|(id, reading, _)| (id, reading)).collect()
+}
+
+/// The same, each with the place behind its last byte; the end of the bytes where a false packet
+/// had swallowed it.
+fn placed_statuses(bytes: &[u8]) -> Vec<(u8, Reading, usize)> {
     let mut receiver = Box::<Receiver<{ two::MAX_PACKET }>>::default();
     let mut found = Vec::new();
-    let mut take = |packet: two::Packet| {
+    let mut take = |packet: two::Packet, end: usize| {
         if let Some((error, data)) = packet.status() {
             let (error, data) = (StatusError::Byte(error), data.collect());
-            found.push((packet.id(), Reading { error, data }));
+            found.push((packet.id(), Reading { error, data }, end));
         }
     };
-    for byte in bytes {
-        receiver.push(*byte).into_iter().for_each(&mut take);
+    for (place, byte) in bytes.iter().enumerate() {
+        let packet = receiver.push(*byte);
+        packet
+            .into_iter()
+            .for_each(|packet| take(packet, place + 1));
     }
     // No more will come: what a false packet swallowed is looked for within it.
     while !receiver.is_empty() {
         receiver.give_up();
         while let Some(packet) = receiver.next_packet() {
-            take(packet);
+            take(packet, bytes.len());
         }
     }
     found

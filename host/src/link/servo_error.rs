@@ -75,6 +75,16 @@ pub enum ServoError {
         /// Its model number.
         number: u16,
     },
+    /// A model whose codes of position are not the AX-12's, where a CM-5 reads or moves it.
+    #[error("servo {id} is of model {number} ({name}); a CM-5 knows the codes of AX and RX only")]
+    NotAxCodes {
+        /// Id of the servo.
+        id: u8,
+        /// Its model number.
+        number: u16,
+        /// Its model.
+        name: &'static str,
+    },
     /// The port failed.
     #[error(transparent)]
     Port(#[from] Error),
@@ -90,6 +100,7 @@ impl ServoError {
                 | ServoError::NoRegister { .. }
                 | ServoError::UnknownModel { .. }
                 | ServoError::OtherProtocol { .. }
+                | ServoError::NotAxCodes { .. }
                 | ServoError::Port(_)
         )
     }
@@ -113,7 +124,12 @@ impl From<ServoError> for Error {
             ServoError::Refused { .. } => "see the error bits in docs/bus.md",
             ServoError::Locked { .. } => "torque off first: handstand bus write ID torque-enable 0",
             ServoError::NoRegister { .. } => "`handstand bus read ID` lists its registers",
-            ServoError::UnknownModel { .. } => "docs/servos.md lists the models that are known",
+            ServoError::UnknownModel { .. } => {
+                "docs/servos.md lists the models that are known; leave it out with --ids"
+            }
+            ServoError::NotAxCodes { .. } => {
+                "reach it through an adapter on the servos' bus, without --stream"
+            }
             ServoError::OtherProtocol { .. } => "pass --protocol 2",
             _ => "`handstand bus doctor` finds the cause",
         };

@@ -31,6 +31,8 @@ pub struct Servos<L> {
     pub(super) identities: BTreeMap<u8, Identity>,
     /// Whether the adapter hears itself; unknown before the first request.
     echo: Option<bool>,
+    /// Bytes that came with the last answer, behind it.
+    pub(super) surplus: usize,
 }
 
 impl<L: SerialLink> Servos<L> {
@@ -45,6 +47,7 @@ impl<L: SerialLink> Servos<L> {
             delays: BTreeMap::new(),
             identities: BTreeMap::new(),
             echo: None,
+            surplus: 0,
         }
     }
 
@@ -78,29 +81,21 @@ impl<L: SerialLink> Servos<L> {
     /// The row of an AX-12's register in servo `id`'s table.
     ///
     /// # Errors
-    /// [`ServoError::NoRegister`], or why the servo's protocol is not known.
+    /// [`ServoError::NoRegister`], [`ServoError::UnknownModel`], or why the servo's model is not
+    /// told.
     pub fn item(&mut self, id: u8, register: Register) -> ServoResult<Item> {
         let name = register.name;
-        let item = self.detect(id)?.item(register);
+        let item = self.known_model(id)?.item(register);
         item.ok_or(ServoError::NoRegister { id, name })
     }
 
     /// Code of a register that all servos have.
     ///
     /// # Errors
-    /// Why there is no good answer.
+    /// As [`Servos::item`], or why there is no good answer.
     pub fn get(&mut self, id: u8, register: Register) -> ServoResult<u16> {
-        // Before any answer, a reading in 1.0 tells as much as a ping.
-        let name = register.name;
-        let item = self.current().item(register);
-        let item = item.ok_or(ServoError::NoRegister { id, name })?;
-        let code = match self.code(id, &item) {
-            Err(ServoError::OtherProtocol { .. }) => {
-                let item = self.item(id, register)?;
-                self.code(id, &item)?
-            }
-            code => code?,
-        };
+        let item = self.item(id, register)?;
+        let code = self.code(id, &item)?;
         if register == RETURN_DELAY {
             self.delays.insert(id, ReturnDelay(code as u8));
         }
@@ -248,6 +243,11 @@ impl<L: SerialLink> Servos<L> {
         let deadline = self.link.now() + self.link.line_time(2 * PROBE.len()) + self.link.latency();
         let heard = read_some(&mut self.link, deadline, |bytes| bytes.ends_with(&PROBE))?;
         Ok(*self.echo.insert(heard.ends_with(&PROBE)))
+    }
+
+    /// Bytes that came with the last answer and behind it, as of a second servo of its id.
+    pub fn surplus(&self) -> usize {
+        self.surplus
     }
 
     /// Bytes that come after an answer was given up.

@@ -1,11 +1,12 @@
 //! What a servo keeps without power, as a file.
 
 use super::port::SerialLink;
+use super::protocol::Protocol;
 use super::servo_error::ServoResult;
+use super::servo_rows::Model;
 use super::servos::Servos;
 use crate::error::{Error, Place, Result};
-use handstand_shared::control_table::models::ServoModel;
-use handstand_shared::control_table::{self as ct, Access, Item, REGISTERS, Register};
+use handstand_shared::control_table::{self as ct, Access, Item, Register};
 use std::fmt::Write as _;
 use std::path::Path;
 use toml_edit::{Document, TableLike};
@@ -114,16 +115,16 @@ fn key(name: &str) -> String {
     name.replace(' ', "_")
 }
 
-/// What a servo of this model number keeps without power; the AX-12's of a number that is not of
-/// Protocol 2.0.
-fn kept(model: Option<i64>) -> Vec<Item> {
-    let model = model.and_then(|number| u16::try_from(number).ok());
-    let model = model.and_then(ServoModel::of);
-    let items: Vec<Item> = match model {
-        Some(model) => model.items().copied().collect(),
-        None => REGISTERS.iter().map(Item::of_register).collect(),
+/// What a servo of this model number keeps without power, by address; none of a number that is not
+/// known. Without a number it is the AX-12's, of which the number is missing.
+fn kept(model: Option<i64>) -> Option<Vec<Item>> {
+    let number = match model {
+        Some(number) => u16::try_from(number).ok()?,
+        None => ct::MODEL.default,
     };
-    items.into_iter().filter(|item| item.is_eeprom).collect()
+    let model = Model::of(Protocol::One, number).or_else(|| Model::of(Protocol::Two, number))?;
+    let items = model.items().into_iter();
+    Some(items.filter(|item| item.is_eeprom).collect())
 }
 
 struct Text<'a> {
@@ -137,7 +138,13 @@ impl Text<'_> {
         let model = table
             .get(&key(ct::MODEL.name))
             .and_then(toml_edit::Item::as_integer);
-        let rows = kept(model);
+        let rows = kept(model).ok_or_else(|| {
+            let number = model.unwrap_or_default();
+            self.error(
+                at,
+                format!("`model_number` {number} is no model that is known"),
+            )
+        })?;
         for (name, item) in table.iter() {
             let at = table
                 .key(name)

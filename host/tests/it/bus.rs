@@ -22,6 +22,79 @@ fn a_scan_finds_who_is_there() {
     assert!(nobody.stderr.contains("bus doctor"), "{nobody:?}");
 }
 
+/// One that answers a ping and no reading ends no scan, and the remedy that the doctor gives helps.
+#[test]
+fn a_scan_lists_what_answers_a_ping_only_with_the_reason() {
+    let bench = Bench::new();
+    let mute = bench.run("bus scan --port sim:ids=1-3,level=0 --ids 1-5 --json");
+    assert_eq!(mute.code, Some(0), "{mute:?}");
+    let servos = mute.json();
+    assert_eq!(servos.as_array().unwrap().len(), 3, "{mute:?}");
+    for servo in servos.as_array().unwrap() {
+        assert!(servo["position_rad"].is_null(), "{mute:?}");
+        let fault = servo["fault"].as_str().unwrap();
+        assert!(fault.contains("status level"), "{mute:?}");
+    }
+    let shown = bench.run("bus scan --port sim:ids=1-3,level=0 --ids 1-5");
+    assert!(
+        shown
+            .stderr
+            .contains("id 2: it answers PING, but no reading"),
+        "{shown:?}"
+    );
+    let mended = bench.run("bus write 1 status-return-level 1 --port sim:ids=1,level=0");
+    assert_eq!(
+        mended.stdout, "servo 1: status return level ? -> 1\n",
+        "{mended:?}"
+    );
+    let setup = bench.run("bus setup --port sim:ids=1-3,level=0 --ids 1-3");
+    assert_eq!(setup.code, Some(4), "{setup:?}");
+}
+
+#[test]
+fn two_servos_of_one_id_are_told_and_not_renamed() {
+    let bench = Bench::new();
+    for model in ["", "model=XL330-M288,"] {
+        let port = format!("sim:{model}ids=1-4+3,delay=0");
+        let scan = bench.run(&format!("bus scan --port {port} --json"));
+        let servos = scan.json();
+        let sound = servos.as_array().unwrap().iter();
+        let sound = sound.filter(|servo| servo["fault"].is_null());
+        assert_eq!(sound.count(), 3, "{scan:?}");
+        let lines: Vec<&str> = (scan.stderr.lines())
+            .filter(|line| line.contains("id 3:"))
+            .collect();
+        assert_eq!(lines.len(), 1, "{scan:?}");
+        assert!(lines[0].contains("two servos of"), "{scan:?}");
+        let doctor = bench.run(&format!("bus doctor --port {port}"));
+        assert_eq!(doctor.code, Some(1), "{doctor:?}");
+        assert!(
+            doctor.stdout.starts_with("1. two servos have the id 3"),
+            "{doctor:?}"
+        );
+        let alone = format!("sim:{model}ids=3+3,delay=0");
+        for port in [&port, &alone] {
+            let renamed = bench.run(&format!("bus setup --port {port} --new-id 7"));
+            assert_eq!(renamed.code, Some(4), "{renamed:?}");
+            assert!(!renamed.stderr.contains("ready"), "{renamed:?}");
+        }
+    }
+}
+
+/// At a wrong speed each ping makes noise: it is told in a line, not in one of each id.
+#[test]
+fn noise_is_told_in_one_line() {
+    let bench = Bench::new();
+    let noise = bench.run("bus scan --port sim:ids=1-9,flip=1 --ids 1-9");
+    assert_eq!(noise.code, Some(4), "{noise:?}");
+    let told = noise
+        .stderr
+        .lines()
+        .filter(|line| line.contains("no sound answer"));
+    assert_eq!(told.count(), 1, "{noise:?}");
+    assert!(noise.stderr.contains("ids 1-9: bytes came"), "{noise:?}");
+}
+
 #[test]
 fn registers_are_read_and_written_by_name() {
     let bench = Bench::new();
@@ -125,6 +198,12 @@ fn the_doctor_names_the_cause_and_says_no() {
             .as_str()
             .unwrap()
             .starts_with("servo 2 is not there")
+    );
+    let some = bench.run("bus doctor --port sim:ids=1-3,delay=0");
+    assert_eq!(some.code, Some(0), "{some:?}");
+    assert!(
+        some.stderr.contains("servos 1-3 answer, of ids 1-18"),
+        "{some:?}"
     );
     let unpowered = bench.run("bus doctor --port sim-cm5:ids=1-3,dead=1-3 --ids 1-3");
     assert!(

@@ -257,3 +257,64 @@ fn a_drop_lets_the_servos_go_and_any_goals_are_played() {
         "{refused:?}"
     );
 }
+
+/// Without `--ids` absent servos cost no time and no columns.
+#[test]
+fn those_that_answer_are_recorded_without_ids() {
+    let bench = Bench::new();
+    for (port, kind) in [
+        ("sim:ids=1-3,delay=0", ""),
+        ("sim:model=XL330-M288,ids=1-3,delay=0", ""),
+        ("sim-cm5:ids=1-3,delay=0", " --stream"),
+    ] {
+        let line = format!("record a.csv --force --seconds 1 --json --port {port}{kind}");
+        let ran = bench.run(&line);
+        assert_eq!(ran.code, Some(0), "{line}: {ran:?}");
+        assert!(
+            ran.json()["rate_hz"].as_f64().unwrap() > 95.0,
+            "{line}: {ran:?}"
+        );
+        assert!(
+            ran.json()["missing"].as_u64().unwrap() < 10,
+            "{line}: {ran:?}"
+        );
+        let said = "servos 1-3 answer, of ids 1-18; --ids names others";
+        assert!(ran.stderr.contains(said), "{line}: {ran:?}");
+        let header = bench.get("a.csv").lines().next().unwrap().to_string();
+        assert!(
+            header.contains("q3_rad") && !header.contains("q4_rad"),
+            "{line}: {header}"
+        );
+    }
+    let nobody = bench.run("record nobody.csv --seconds 1 --port sim:ids=30");
+    assert_eq!(nobody.code, Some(4), "{nobody:?}");
+    let monitor = bench.run("bus monitor --rounds 1 --port sim:ids=2+5 --json");
+    assert_eq!(monitor.json()[0]["servos"].as_array().unwrap().len(), 2);
+}
+
+/// A servo that stands still does not make a good replay; `--ids` chooses among a motion's servos.
+#[test]
+fn a_replay_whose_servo_stands_still_says_no() {
+    let bench = Bench::new();
+    let row = |k: i32| {
+        let t = f64::from(k) * 0.02;
+        let goal = 0.3 * (4.0 * t).sin();
+        format!("{t:.2},{goal:.4},{goal:.4}\n")
+    };
+    let rows: String = (0..30).map(row).collect();
+    bench.put("m.csv", format!("time_s,goal1_rad,goal2_rad\n{rows}"));
+    let port = "sim:ids=1-2,delay=0,jam=2";
+    let stuck = bench.run(&format!(
+        "replay m.csv --yes --json --adapter --port {port}"
+    ));
+    assert_eq!(stuck.code, Some(1), "{stuck:?}");
+    assert_eq!(stuck.json()["not_followed"][0]["servo"], 2, "{stuck:?}");
+    assert!(stuck.stderr.contains("servo 2 did not follow"), "{stuck:?}");
+    let well = bench.run(&format!(
+        "replay m.csv --yes --adapter --ids 1 --port {port}"
+    ));
+    assert_eq!(well.code, Some(0), "{well:?}");
+    let absent = bench.run("replay m.csv --yes --ids 3 --port sim");
+    assert_eq!(absent.code, Some(2), "{absent:?}");
+    assert!(absent.stderr.contains("it has 1-2"), "{absent:?}");
+}

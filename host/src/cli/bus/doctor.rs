@@ -1,7 +1,7 @@
 //! `bus doctor`: why a servo gives no status packet. Likely causes first, each with what was seen
 //! and what to do.
 //!
-//! It listens for an echo, pings every servo twenty times, and where no servo answers tries a
+//! It listens for an echo, pings every servo twenty times and reads it twenty times, and where no servo answers tries a
 //! CM-5's firmware, other speeds and other ids. Nothing is written to any servo. Exit code 0: all
 //! is well; 1: causes were found.
 //!
@@ -11,7 +11,7 @@
 //! `title`, `outcome` (`passed`, `failed`, `not_done`) and `found`.
 
 use super::bring_up;
-use crate::cli::port::{Ids, Port, id_list};
+use crate::cli::port::{AnyLink, DEFAULT_IDS, Ids, Port, id_list, say_found};
 use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::link::doctor::{BusDiagnosis, examine};
@@ -22,9 +22,9 @@ use std::path::PathBuf;
 pub struct BusDoctorArgs {
     #[command(flatten)]
     port: Port,
-    /// Servos that should be there
-    #[arg(long, default_value = "1-18", value_parser = id_list)]
-    ids: Ids,
+    /// Servos that should be there; without, those of 1-18 from which anything comes
+    #[arg(long, value_parser = id_list)]
+    ids: Option<Ids>,
     /// Walk through the first power-on checklist (docs/bring-up.md) instead, with a CM-5
     #[arg(long)]
     bring_up: bool,
@@ -38,19 +38,37 @@ pub struct BusDoctorArgs {
 
 /// Examines, shows.
 pub fn run(args: &BusDoctorArgs, talk: &Talk) -> Result<ExitStatus> {
-    let link = args.port.open()?;
+    let mut link = args.port.open()?;
+    let given = args.ids.as_ref().map(|Ids(ids)| ids.clone());
     if args.bring_up {
         let report = args.report.as_deref();
-        return bring_up::run(link, &args.ids.0, report, args.yes, talk);
+        let ids = given.unwrap_or(DEFAULT_IDS.to_vec());
+        return bring_up::run(link, &ids, report, args.yes, talk);
     }
+    let ids = match given {
+        Some(ids) => ids,
+        None => with_a_sign_of_life(args, &mut link, talk)?,
+    };
     let bar = talk.bar(0);
-    let diagnosis = examine(link, &args.ids.0, args.port.protocol(), |step| {
+    let diagnosis = examine(link, &ids, args.port.protocol(), |step| {
         bar.set_message(step.to_string());
         bar.tick();
     })?;
     drop(bar);
     talk.result(&diagnosis, || text(&diagnosis))?;
     Ok(ExitStatus::answer(diagnosis.causes.is_empty()))
+}
+
+/// Ids from which anything comes; all that were asked where nothing does.
+fn with_a_sign_of_life(args: &BusDoctorArgs, link: &mut AnyLink, talk: &Talk) -> Result<Vec<u8>> {
+    let found = args.port.on(link).answering(&DEFAULT_IDS)?;
+    say_found(&found, talk);
+    let mut ids = [found.ids(), found.garbled].concat();
+    ids.sort_unstable();
+    Ok(match ids.is_empty() {
+        true => DEFAULT_IDS.to_vec(),
+        false => ids,
+    })
 }
 
 fn text(diagnosis: &BusDiagnosis) -> String {
@@ -60,7 +78,7 @@ fn text(diagnosis: &BusDiagnosis) -> String {
     });
     match diagnosis.causes.len() {
         0 => format!(
-            "All is well: {} servos answer every ping.",
+            "All is well: {} servos answer every ping and reading.",
             diagnosis.pings.len()
         ),
         _ => causes.collect::<Vec<_>>().join("\n"),

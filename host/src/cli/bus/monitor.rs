@@ -1,12 +1,12 @@
 //! `bus monitor`: rounds of readings, until Ctrl-C or `--rounds`. Nothing is written to the servos.
 
 use super::scan::degrees;
-use crate::cli::port::{AnyLink, Ids, Port, id_list};
+use crate::cli::port::{AnyLink, DEFAULT_IDS, Ids, Port, chosen, id_list};
 use crate::cli::show::{or_dash, table_of};
 use crate::cli::{ExitStatus, Talk, interrupt::Interrupt};
 use handstand::Result;
 use handstand::link::record::ServoSample;
-use handstand::link::{Protocol, ServoResult, Servos};
+use handstand::link::{Protocol, ServoError, ServoResult, Servos};
 use handstand::output::table::TableColumn;
 use handstand_shared::control_table::PRESENT_POSITION;
 use serde::Serialize;
@@ -17,9 +17,9 @@ use std::time::Duration;
 pub struct MonitorArgs {
     #[command(flatten)]
     port: Port,
-    /// Servos to watch
-    #[arg(long, default_value = "1-18", value_parser = id_list)]
-    ids: Ids,
+    /// Servos to watch; those of 1-18 that answer without
+    #[arg(long, value_parser = id_list)]
+    ids: Option<Ids>,
     /// Rounds to watch; until Ctrl-C without
     #[arg(long)]
     rounds: Option<u64>,
@@ -52,6 +52,11 @@ pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
     let every = Duration::try_from_secs_f64(args.every).unwrap_or(Duration::from_secs(1));
     let interrupt = Interrupt::listen();
     let mut servos = args.port.servos()?;
+    let ids = chosen(
+        args.ids.as_ref(),
+        || Ok(servos.answering(&DEFAULT_IDS)?),
+        talk,
+    )?;
     let mut rounds = Vec::new();
     for round in 0.. {
         if interrupt.has_come() || args.rounds.is_some_and(|most| round >= most) {
@@ -59,14 +64,18 @@ pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
         }
         let time_s = servos.link().now().as_secs_f64();
         let mut seen = Vec::new();
-        for id in &args.ids.0 {
+        for id in &ids {
             seen.push(match ServoReading::ask(&mut servos, *id) {
                 Ok(reading) => reading,
                 Err(error) => {
-                    error.port()?;
+                    let flag = match error.port()? {
+                        ServoError::UnknownModel { .. } => "unknown model",
+                        ServoError::NoResponse { .. } => "silent",
+                        _ => "no sound answer",
+                    };
                     ServoReading {
                         id: *id,
-                        error_flags: vec!["silent"],
+                        error_flags: vec![flag],
                         ..ServoReading::default()
                     }
                 }
@@ -98,9 +107,10 @@ impl ServoReading {
             let (joint, errors) = ServoSample::ask(servos, id)?;
             return Ok(Self::of(id, &joint, errors));
         }
+        let servo = servos.one_servo(id)?;
         // Registers 36 to 43: position, speed, load, supply, temperature.
         let reading = servos.read(id, u16::from(PRESENT_POSITION.address), 8)?;
-        let joint = ServoSample::of_reading(&reading).unwrap_or_default();
+        let joint = ServoSample::of_one(&servo, &reading).unwrap_or_default();
         Ok(Self::of(id, &joint, reading.error.names()))
     }
 

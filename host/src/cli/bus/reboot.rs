@@ -4,7 +4,7 @@
 
 use crate::cli::port::{Ids, Port, id_list};
 use crate::cli::{ExitStatus, Talk};
-use handstand::link::Protocol;
+use handstand::link::{Protocol, ServoError};
 use handstand::{Error, Result};
 use serde_json::json;
 
@@ -31,7 +31,16 @@ pub fn run(args: &RebootArgs, talk: &Talk) -> Result<ExitStatus> {
             ));
         }
         servos.reboot(*id)?;
-        let errors = servos.hardware_errors(*id)?;
+        let errors = match servos.hardware_errors(*id) {
+            Err(ServoError::UnknownModel { number, .. }) => {
+                talk.say(&format!(
+                    "servo {id} is back; where model {number} keeps its errors is not known"
+                ));
+                rebooted.push(json!({ "id": id, "error_flags": null }));
+                continue;
+            }
+            errors => errors?,
+        };
         is_well &= errors.is_empty();
         talk.say(&match errors.is_empty() {
             true => format!("servo {id} is back"),

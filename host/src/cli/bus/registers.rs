@@ -2,12 +2,11 @@
 
 use crate::cli::port::{AnyLink, Port};
 use crate::cli::{ExitStatus, Talk, show::table_of};
-use handstand::link::{Protocol, Servos};
+use handstand::link::{Model, OneMode, OneServo, ServoError, Servos};
 use handstand::model::suggest::suggest;
 use handstand::output::table::{TableColumn, or_empty};
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Access, Item, Register, x};
-use handstand_shared::raw::{MovingSpeed, Position, Signed};
 use serde::Serialize;
 use serde_json::json;
 
@@ -99,8 +98,8 @@ fn content(
     code: i32,
 ) -> Result<RegisterContent> {
     let (address, register) = (item.address, item.name);
-    if servos.detect(id)? == Protocol::Two {
-        let si = item.quantity.si(code, servos.model(id)?.current_lsb_a);
+    if let Model::Two(model) = servos.known_model(id)? {
+        let si = item.quantity.si(code, model.current_lsb_a);
         return Ok(RegisterContent {
             address,
             register,
@@ -111,15 +110,20 @@ fn content(
             default: None,
         });
     }
+    let servo = servos.one_servo(id)?;
     let row = u8::try_from(address).ok().and_then(Register::at);
+    let row = row.filter(|row| row.name == register);
+    // The factory's codes of the other models are not in the table.
+    let own =
+        row.filter(|row| row.access == Access::Write && servo.model.number == ct::MODEL.default);
     Ok(RegisterContent {
         address,
         register,
         code,
-        means: row.map_or(String::new(), |row| meaning(*row, code as u16)),
+        means: row.map_or(String::new(), |row| meaning(*row, code, &servo)),
         value: None,
         unit: None,
-        default: (row.filter(|row| row.access == Access::Write)).map(|row| row.default),
+        default: own.map(|row| row.default),
     })
 }
 
@@ -127,7 +131,16 @@ fn content(
 pub fn write(args: &WriteArgs, talk: &Talk) -> Result<ExitStatus> {
     let (id, code) = (args.id, args.code);
     let mut servos = args.port.servos()?;
-    let item = row(&servos.items(id)?, &args.register)?;
+    let item = match servos.items(id) {
+        // At status level 0 it does not tell its model, and this register is what helps.
+        Err(ServoError::NoResponse { .. })
+            if Item::of_register(&ct::STATUS_LEVEL).is_named(&args.register)
+                && servos.ping(id).is_ok() =>
+        {
+            Item::of_register(&ct::STATUS_LEVEL)
+        }
+        items => row(&items?, &args.register)?,
+    };
     if item.access == Access::Read {
         return Err(Error::usage(
             format!("`{}` can only be read", item.name),
@@ -140,11 +153,17 @@ pub fn write(args: &WriteArgs, talk: &Talk) -> Result<ExitStatus> {
             format!("give {} to {}", item.min, item.max),
         ));
     }
-    let before = servos.code(id, &item)?;
+    let before = match servos.code(id, &item) {
+        Err(ServoError::NoResponse { .. }) if item.name == ct::STATUS_LEVEL.name => None,
+        before => Some(before?),
+    };
     servos.set_code(id, &item, code)?;
     let name = item.name;
     let data = json!({ "id": id, "register": name, "before": before, "code": code });
-    talk.result(&data, || format!("servo {id}: {name} {before} -> {code}"))?;
+    talk.result(&data, || {
+        let before = before.map_or("?".to_string(), |code| code.to_string());
+        format!("servo {id}: {name} {before} -> {code}")
+    })?;
     Ok(ExitStatus::Done)
 }
 
@@ -187,33 +206,46 @@ fn level(code: i32) -> String {
     word.unwrap_or(&"").to_string()
 }
 
-/// A code in words.
-pub fn meaning(register: Register, code: u16) -> String {
-    let speed = |code: u16| {
-        format!(
-            "{:.2} rad/s",
-            f64::from(Signed(code).get()) * Signed::SPEED_LSB_RAD_S
-        )
-    };
+/// A code of a servo of Protocol 1.0 in words.
+fn meaning(register: Register, code: i32, servo: &OneServo) -> String {
+    const NONE: &str = "no code that it can have";
+    let word = code as u16;
     match register {
-        ct::GOAL_POSITION | ct::PRESENT_POSITION | ct::CW_LIMIT | ct::CCW_LIMIT => {
-            format!("{:.1} deg", Position(code).to_rad().to_degrees())
+        ct::GOAL_POSITION | ct::PRESENT_POSITION => {
+            let angle = servo.angle_rad(word);
+            angle.map_or(NONE.to_string(), |rad| {
+                format!("{:.1} deg", rad.to_degrees())
+            })
         }
+        ct::CW_LIMIT | ct::CCW_LIMIT => match servo.mode {
+            OneMode::Wheel => "wheel mode".to_string(),
+            OneMode::MultiTurn => "multi-turn mode".to_string(),
+            OneMode::Joint => format!("{:.1} deg", servo.angle_of(code).to_degrees()),
+        },
         ct::MOVING_SPEED if code == 0 => "no limit".to_string(),
-        ct::MOVING_SPEED => format!("{:.2} rad/s", MovingSpeed(code & 0x3ff).to_rad_s()),
-        ct::PRESENT_SPEED => speed(code),
-        ct::PRESENT_LOAD => format!(
-            "{:.0} % of full output",
-            f64::from(Signed(code).get()) * Signed::OUTPUT_LSB * 100.0
-        ),
+        ct::MOVING_SPEED | ct::PRESENT_SPEED => {
+            let speed = servo.speed_rad_s(word);
+            let magnitude = |w: f64| {
+                if register == ct::MOVING_SPEED {
+                    w.abs()
+                } else {
+                    w
+                }
+            };
+            speed.map_or(NONE.to_string(), |w| format!("{:.2} rad/s", magnitude(w)))
+        }
+        ct::PRESENT_LOAD => servo.load(word).map_or(NONE.to_string(), |share| {
+            format!("{:.0} % of full output", share * 100.0)
+        }),
         ct::PRESENT_SUPPLY | ct::MIN_SUPPLY | ct::MAX_SUPPLY => {
             format!("{:.1} V", f64::from(code) * 0.1)
         }
         ct::PRESENT_TEMPERATURE | ct::MAX_TEMPERATURE => format!("{code} C"),
         ct::RETURN_DELAY => format!("{} us", 2 * code),
-        ct::BAUD => format!("{} baud", ct::baud_of(code as u8)),
+        ct::BAUD => format!("{} baud", servo.model.baud_of(code as u8)),
         ct::MAX_TORQUE | ct::TORQUE_LIMIT => format!("{:.0} %", f64::from(code) / 10.23),
-        ct::STATUS_LEVEL => level(i32::from(code)),
+        ct::STATUS_LEVEL => level(code),
+        ct::MODEL => servo.model.name.to_string(),
         _ => String::new(),
     }
 }

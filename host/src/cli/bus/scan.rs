@@ -1,16 +1,16 @@
 //! `bus scan`: pings every id in Protocol 1.0, all at once in 2.0, and reads what answers.
 //!
-//! `--protocol` leaves the other one out.
+//! `--protocol` leaves the other one out. A servo that answers a ping and no reading is listed with
+//! the reason, and so is one whose model is not known, without values.
 
 use crate::cli::port::{AnyLink, Ids, Port, id_list};
-use crate::cli::{ExitStatus, Talk, show::table_of};
-use handstand::Result;
+use crate::cli::show::{or_dash, table_of};
+use crate::cli::{ExitStatus, Talk};
 use handstand::link::record::no_response;
-use handstand::link::{Protocol, ServoError, ServoResult, Servos, StatusError};
+use handstand::link::{Model, Protocol, ServoError, ServoResult, Servos, StatusError, id_ranges};
 use handstand::output::table::TableColumn;
-use handstand_shared::control_table::models::ServoModel;
-use handstand_shared::control_table::{self as ct, Quantity, x};
-use handstand_shared::raw::Position;
+use handstand::{Error, Result};
+use handstand_shared::control_table::{self as ct, Item, Quantity, x};
 use serde::Serialize;
 
 /// Scan the bus for servos.
@@ -23,25 +23,28 @@ pub struct ScanArgs {
     ids: Ids,
 }
 
-/// A servo that answered.
+/// A servo that answered a ping, and what it says; none of what it did not say, or what its model's
+/// table, not known here, may have elsewhere.
 #[derive(Debug, Serialize)]
 pub struct FoundServo {
     pub id: u8,
     pub protocol: Protocol,
-    pub model: u16,
-    pub firmware: u16,
-    pub return_delay_us: u16,
-    pub status_level: u16,
-    pub position_rad: f64,
-    pub supply_v: f64,
-    pub temperature_celsius: u16,
+    pub model: Option<u16>,
+    pub firmware: Option<u8>,
+    pub return_delay_us: Option<u16>,
+    pub status_level: Option<u16>,
+    pub position_rad: Option<f64>,
+    pub supply_v: Option<f64>,
+    pub temperature_celsius: Option<u16>,
     pub error_flags: Vec<&'static str>,
+    /// Why values are missing.
+    pub fault: Option<String>,
 }
 
 /// Asks, shows.
 pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
-    let found = scan(&mut servos, &args.ids.0, talk)?;
+    let (found, _) = scan(&mut servos, &args.ids.0, talk)?;
     talk.result(&found, || table(&found))?;
     let asked = args.ids.0.len();
     talk.say(&format!("{} of {asked} ids answer", found.len()));
@@ -55,13 +58,23 @@ fn table(found: &[FoundServo]) -> String {
     let columns: &[TableColumn<FoundServo>] = &[
         ("Id", &|s| s.id.to_string()),
         ("Protocol", &|s| s.protocol.to_string()),
-        ("Model", &|s| model(s)),
-        ("Firmware", &|s| s.firmware.to_string()),
-        ("Return delay", &|s| format!("{} us", s.return_delay_us)),
-        ("Status level", &|s| s.status_level.to_string()),
-        ("Position", &|s| degrees(s.position_rad)),
-        ("Supply", &|s| format!("{:.1} V", s.supply_v)),
-        ("Temp", &|s| format!("{} C", s.temperature_celsius)),
+        ("Model", &|s| {
+            or_dash(s.model, |number| model(s.protocol, number))
+        }),
+        ("Firmware", &|s| {
+            or_dash(s.firmware, |version| version.to_string())
+        }),
+        ("Return delay", &|s| {
+            or_dash(s.return_delay_us, |us| format!("{us} us"))
+        }),
+        ("Status level", &|s| {
+            or_dash(s.status_level, |level| level.to_string())
+        }),
+        ("Position", &|s| or_dash(s.position_rad, degrees)),
+        ("Supply", &|s| or_dash(s.supply_v, |v| format!("{v:.1} V"))),
+        ("Temp", &|s| {
+            or_dash(s.temperature_celsius, |c| format!("{c} C"))
+        }),
         ("Error flags", &|s| s.error_flags.join(", ")),
     ];
     table_of(found, columns).to_string()
@@ -75,9 +88,25 @@ pub fn degrees(rad: f64) -> String {
 /// The ids of those that answer.
 ///
 /// # Errors
-/// None answers.
+/// None answers; one does not tell what it is; or there are two of one id, as it seems.
 pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<u8>> {
-    let found = scan(servos, ids, talk)?;
+    let (found, garbled) = scan(servos, ids, talk)?;
+    if !found.is_empty() && !garbled.is_empty() {
+        return Err(Error::device(
+            format!(
+                "servos answer, and so does what is none at id {}",
+                id_ranges(&garbled)
+            ),
+            "`handstand bus doctor` finds the cause; --ids leaves it out",
+        ));
+    }
+    if let Some(servo) = found.iter().find(|servo| servo.fault.is_some()) {
+        let (id, fault) = (servo.id, servo.fault.as_deref().unwrap_or_default());
+        return Err(Error::device(
+            format!("servo {id}: {fault}"),
+            "`handstand bus doctor` finds the cause; --ids leaves it out",
+        ));
+    }
     match found.is_empty() {
         true => Err(no_response()),
         false => Ok(found.iter().map(|servo| servo.id).collect()),
@@ -85,103 +114,142 @@ pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Resul
 }
 
 /// Pings these ids and reads what answers, in both protocols unless one was asked for. The servos
-/// are left with the protocol that more of them speak.
-pub fn scan(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<FoundServo>> {
+/// are left with the protocol that more of them speak. Also the ids at which only bytes came, which
+/// are said.
+///
+/// # Errors
+/// The port failed.
+pub fn scan(
+    servos: &mut Servos<AnyLink>,
+    ids: &[u8],
+    talk: &Talk,
+) -> Result<(Vec<FoundServo>, Vec<u8>)> {
     let asked = servos.protocol;
     let mut found = Vec::new();
-    if asked != Some(Protocol::Two) {
+    let mut garbled = Vec::new();
+    let mut ones = 0;
+    for protocol in [Protocol::One, Protocol::Two] {
+        if asked.is_some_and(|asked| asked != protocol) {
+            continue;
+        }
+        let bar = talk.bar(ids.len() as u64);
+        // A silent id is asked once: most are.
+        let answering = servos.answering_in(protocol, ids, 1, || bar.inc(1))?;
+        for (id, error) in answering.sound {
+            found.push(read(servos, id, error)?);
+        }
+        garbled.extend(answering.garbled);
+        if protocol == Protocol::One {
+            ones = found.len();
+        }
+    }
+    if asked.is_none() && 2 * ones >= found.len() {
         servos.protocol = Some(Protocol::One);
-        found = scan_one(servos, ids, talk)?;
     }
-    if asked != Some(Protocol::One) {
-        servos.protocol = Some(Protocol::Two);
-        let ones = found.len();
-        // A servo that did not hear the broadcast, or was not heard, is asked by itself.
-        let all = servos.ping_all()?;
-        for id in ids {
-            let is_there = all.contains(id) || (ids.len() <= FEW && servos.ping(*id).is_ok());
-            if is_there && let Ok(error) = servos.ping(*id) {
-                found.push(read(servos, *id, error)?);
-            }
-        }
-        if asked.is_none() && 2 * ones >= found.len() {
-            servos.protocol = Some(Protocol::One);
+    garbled.sort_unstable();
+    garbled.dedup();
+    garbled.retain(|id| found.iter().all(|servo| servo.id != *id));
+    if !garbled.is_empty() {
+        talk.say(&garbled_words(&garbled));
+    }
+    for servo in &found {
+        if let Some(fault) = &servo.fault {
+            talk.say(&format!("id {}: {fault}", servo.id));
         }
     }
-    Ok(found)
+    Ok((found, garbled))
 }
 
-/// So many ids are pinged one by one even where a broadcast did not find them.
-const FEW: usize = 20;
-
-fn scan_one(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<FoundServo>> {
-    let bar = talk.bar(ids.len() as u64);
-    let mut found = Vec::new();
-    for id in ids {
-        // A silent id is asked once: most are. One that says anything gets its tries.
-        servos.tries = 1;
-        let pinged = servos.ping(*id);
-        servos.tries = 3;
-        match pinged {
-            Ok(error) => found.push(read(servos, *id, error)?),
-            Err(ServoError::NoResponse { .. }) => {}
-            Err(ServoError::Port(error)) => return Err(error),
-            Err(_) => {
-                if let Ok(error) = servos.ping(*id) {
-                    found.push(read(servos, *id, error)?);
-                } else {
-                    talk.say(&format!(
-                        "id {id}: bytes came, but no sound answer: two servos of this id, or a \
-                         bad line"
-                    ));
-                }
-            }
-        }
-        bar.inc(1);
-    }
-    Ok(found)
+/// What is to be said of ids at whose pings bytes came that were no answer.
+pub fn garbled_words(ids: &[u8]) -> String {
+    let several = if ids.len() == 1 { "id" } else { "ids" };
+    format!(
+        "{several} {}: bytes came, but no sound answer: two servos of one id, a wrong --baud, or a \
+         bad line; `handstand bus doctor` tells them apart",
+        id_ranges(ids)
+    )
 }
 
-fn read(servos: &mut Servos<AnyLink>, id: u8, error: StatusError) -> ServoResult<FoundServo> {
+/// What a servo that answered a ping says.
+fn read(servos: &mut Servos<AnyLink>, id: u8, error: StatusError) -> Result<FoundServo> {
     let protocol = servos.detect(id)?;
-    let (position_rad, error_flags) = match protocol {
-        Protocol::One => {
-            let code = servos.get(id, ct::PRESENT_POSITION)?;
-            (Position(code).to_rad(), error.names())
-        }
-        Protocol::Two => {
-            let code = servos.code(id, &x::PRESENT_POSITION)?;
-            let position = Quantity::Position.si(code, None);
-            let names = match error.has_alert() {
-                true => servos.hardware_errors(id)?,
-                false => Vec::new(),
-            };
-            (position.map_or(0.0, |(rad, _)| rad), names)
-        }
-    };
-    Ok(FoundServo {
+    let mut found = FoundServo {
         id,
         protocol,
-        model: servos.get(id, ct::MODEL)?,
-        firmware: servos.get(id, ct::FIRMWARE)?,
-        return_delay_us: 2 * servos.get(id, ct::RETURN_DELAY)?,
-        status_level: servos.get(id, ct::STATUS_LEVEL)?,
-        position_rad,
-        supply_v: f64::from(servos.get(id, ct::PRESENT_SUPPLY)?) * 0.1,
-        temperature_celsius: servos.get(id, ct::PRESENT_TEMPERATURE)?,
-        error_flags,
-    })
+        model: None,
+        firmware: None,
+        return_delay_us: None,
+        status_level: None,
+        position_rad: None,
+        supply_v: None,
+        temperature_celsius: None,
+        error_flags: match protocol {
+            Protocol::One => error.names(),
+            Protocol::Two => Vec::new(),
+        },
+        fault: None,
+    };
+    if let Err(error) = read_into(&mut found, servos, error) {
+        found.fault = Some(why(protocol, error.port()?));
+    }
+    Ok(found)
 }
 
-fn model(servo: &FoundServo) -> String {
-    if servo.protocol == Protocol::Two {
-        let model = ServoModel::of(servo.model);
-        return model.map_or_else(|| servo.model.to_string(), |model| model.name.to_string());
+fn read_into(
+    found: &mut FoundServo,
+    servos: &mut Servos<AnyLink>,
+    error: StatusError,
+) -> ServoResult<()> {
+    let id = found.id;
+    let identity = servos.identify(id)?;
+    found.model = Some(identity.number);
+    found.firmware = Some(identity.firmware);
+    found.position_rad = match servos.known_model(id)? {
+        Model::One(_) => {
+            let servo = servos.one_servo(id)?;
+            // As the line has it: the sign is the mode's.
+            let code = servos.code(id, &Item::of_register(&ct::PRESENT_POSITION))?;
+            servo.angle_rad(code as u16)
+        }
+        Model::Two(_) => {
+            let code = servos.code(id, &x::PRESENT_POSITION)?;
+            Quantity::Position.si(code, None).map(|(rad, _)| rad)
+        }
+    };
+    if servos.surplus() > 0 {
+        found.fault = Some("its answers come double: two servos of this id".into());
     }
-    match servo.model {
-        12 => "AX-12".to_string(),
-        18 => "AX-18".to_string(),
-        300 => "AX-12W".to_string(),
+    if error.has_alert() {
+        found.error_flags = servos.hardware_errors(id)?;
+    }
+    found.return_delay_us = Some(2 * servos.get(id, ct::RETURN_DELAY)?);
+    found.status_level = Some(servos.get(id, ct::STATUS_LEVEL)?);
+    found.supply_v = Some(f64::from(servos.get(id, ct::PRESENT_SUPPLY)?) * 0.1);
+    found.temperature_celsius = Some(servos.get(id, ct::PRESENT_TEMPERATURE)?);
+    Ok(())
+}
+
+/// Why a servo that answers a ping says no more.
+fn why(protocol: Protocol, error: ServoError) -> String {
+    match error {
+        ServoError::NoResponse { .. } => {
+            "it answers PING, but no reading: its status level is 0, or answers are lost".into()
+        }
+        ServoError::Garbled { .. } | ServoError::UnexpectedId { .. } => {
+            "it answers PING, but its readings are garbled: two servos of this id, or a bad line"
+                .into()
+        }
+        ServoError::UnknownModel { number, .. } => format!(
+            "model {number} of Protocol {protocol}, whose control table is not known \
+             (docs/servos.md): its values are left out"
+        ),
+        ServoError::Refused { error, .. } => {
+            format!("it refuses a reading: {}", error.names().join(", "))
+        }
         other => other.to_string(),
     }
+}
+
+fn model(protocol: Protocol, number: u16) -> String {
+    Model::of(protocol, number).map_or_else(|| number.to_string(), |model| model.name().to_string())
 }

@@ -2,13 +2,15 @@
 //!
 //! The factory's return delay of 500 us alone makes a round of 18 servos last longer than 10 ms;
 //! status level 1 spares the answers to writes. A new id is given only while a single servo is
-//! connected: two of one id cannot be told apart. Servos of Protocol 2.0 take these settings with
+//! connected: two of one id would both get it. Twenty readings tell two from one, unless both stand at
+//! the same code and are equally warm. Servos of Protocol 2.0 take these settings with
 //! torque off, and no id above 252.
 
 use super::changes::{self, RegisterChange};
 use super::scan::answering;
 use crate::cli::port::{Ids, Port, id_list};
 use crate::cli::{ExitStatus, Talk};
+use handstand::link::doctor::read_test;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{ID, RETURN_DELAY, STATUS_LEVEL};
 use serde_json::json;
@@ -48,6 +50,13 @@ pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
             return Err(Error::usage(
                 "a new id needs a scan of all ids",
                 "leave --ids out: another servo might hear it too",
+            ));
+        }
+        let readings = read_test(&mut servos, only)?;
+        if readings.is_twice() {
+            return Err(Error::device(
+                format!("two servos have the id {only}: {}", readings.evidence()),
+                "both would get the new id: connect one of the two, and no other",
             ));
         }
         if only != new {

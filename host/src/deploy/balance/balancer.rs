@@ -48,7 +48,7 @@ impl<L: SerialLink> Balancer<L> {
         let account = telemetry(&mut session)?;
         let begun = session.link().now();
         Ok(Balancer {
-            reader: ReportReader::new(ids.len(), begun, &account),
+            reader: ReportReader::new(ids, begun, &account),
             status: BalanceStatus::new(&Plan::ZERO, ids),
             session,
             attitude,

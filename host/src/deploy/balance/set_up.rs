@@ -108,7 +108,7 @@ impl<L: SerialLink> Balancer<L> {
             .obey(&Command::Mode(Mode::Balance), "prepare to balance")?;
         let account = telemetry(&mut self.session)?;
         let begun = self.session.link().now();
-        self.reader = ReportReader::new(self.ids.len(), begun, &account);
+        self.reader = ReportReader::new(&self.ids, begun, &account);
         for _ in 0..SETTLED {
             self.step()?;
         }

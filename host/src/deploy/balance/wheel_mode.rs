@@ -24,7 +24,7 @@ impl WheelChange {
     /// Those of the servos `ids`, of which `driven` balance; all of them get the code 0.
     ///
     /// # Errors
-    /// A servo does not answer.
+    /// A servo does not answer, or its codes are not those that the CM-5's firmware goes by.
     pub fn needed<L: SerialLink>(
         servos: &mut Servos<L>,
         ids: &[u8],
@@ -32,6 +32,7 @@ impl WheelChange {
     ) -> ServoResult<Vec<WheelChange>> {
         let mut changes = Vec::new();
         for &id in ids {
+            servos.cm5_servo(id)?;
             let needed = if driven.contains(&id) { DRIVEN } else { READ };
             for &register in needed {
                 let before = servos.get(id, register)?;

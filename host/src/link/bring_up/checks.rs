@@ -3,7 +3,8 @@
 use super::steps::Check;
 use super::{Person, StepOutcome};
 use crate::error::{Error, Result};
-use crate::link::{SerialLink, Servos, Session, cause_words, condition_words, fault_log};
+use crate::link::bridge::bridged;
+use crate::link::{SerialLink, Session, cause_words, condition_words, fault_log};
 use handstand_shared::control_table::TORQUE_ENABLE;
 use handstand_shared::message::{
     ArmLimits, Cause, Command, Condition, Mode, Report, ServoList, StreamReport, Subject, Telemetry,
@@ -23,8 +24,6 @@ const PINGS: usize = 20;
 const STILL: u16 = 5;
 /// Torque has to be off so long after the last sign of life.
 const OFF_WITHIN: Duration = Duration::from_millis(300);
-/// For so long after a mode was chosen the CM-5 repeats that torque is off.
-const INSISTS: Duration = Duration::from_millis(250);
 
 /// Outcome and what was found; what the device does wrong is an outcome.
 pub(super) fn measured<L: SerialLink>(
@@ -72,7 +71,7 @@ fn firmware<L: SerialLink>(link: &mut L) -> CheckOutcome {
 }
 
 fn servos<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
-    let mut servos = adapter(link)?;
+    let mut servos = bridged(link)?;
     servos.tries = 1;
     let mut found = Vec::new();
     for id in ids {
@@ -132,6 +131,9 @@ fn gyro_zero<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
 }
 
 fn limited_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
+    if let Some(id) = ids.first() {
+        bridged(link)?.cm5_servo(*id)?;
+    }
     let mut session = streaming(link, ids.get(..1).unwrap_or(ids))?;
     arm(&mut session)?;
     let reports = stream(&mut session, Duration::from_secs(1))?;
@@ -151,6 +153,9 @@ fn limited_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
 }
 
 fn link_loss<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
+    if let Some(id) = ids.first() {
+        bridged(link)?.cm5_servo(*id)?;
+    }
     let mut session = streaming(link, ids.get(..1).unwrap_or(ids))?;
     arm(&mut session)?;
     let begun = session.link().now();
@@ -169,7 +174,7 @@ fn link_loss<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     let Some((after, condition)) = off else {
         return Ok((false, "torque stays on".to_string()));
     };
-    let mut servos = adapter(session.link())?;
+    let mut servos = bridged(session.link())?;
     let torque = match ids.first() {
         Some(id) => servos.get(*id, TORQUE_ENABLE)?,
         None => 0,
@@ -184,13 +189,6 @@ fn link_loss<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
         is_well,
         format!("off after {ms} ms; torque register {torque}; log: {logged}"),
     ))
-}
-
-fn adapter<L: SerialLink>(link: &mut L) -> Result<Servos<&mut L>> {
-    Session::open(&mut *link)?.obey(&Command::Mode(Mode::Bridge), "pass bytes on")?;
-    link.pause(INSISTS);
-    link.clear()?;
-    Ok(Servos::new(link))
 }
 
 /// A session that reads these servos, torque off.

@@ -2,6 +2,7 @@
 //! what arrives.
 
 use super::ping_test::{PINGS, PingTest};
+use super::read_test::ReadTest;
 use super::{Cause, cause};
 
 /// One way in which an exchange fails.
@@ -66,9 +67,10 @@ pub(super) fn disturbances(pings: &[PingTest]) -> impl Iterator<Item = Cause> {
 }
 
 /// Whether its answers look like those of two: garbled, or one behind the other where they miss
-/// each other.
+/// each other; or its readings do, where two answer a ping alike.
 pub(super) fn is_twice(test: &PingTest) -> bool {
-    2 * (test.garbled + test.doubled) > PINGS
+    let readings = test.readings.as_ref();
+    2 * (test.garbled + test.doubled) > PINGS || readings.is_some_and(ReadTest::is_twice)
 }
 
 fn is_silent(test: &PingTest) -> bool {

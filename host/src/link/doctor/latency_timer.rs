@@ -7,10 +7,16 @@ use std::time::Duration;
 /// What exchanges take whatever their length, where the timer is at its 16 ms.
 const HELD_BACK: std::ops::Range<Duration> = Duration::from_millis(14)..Duration::from_millis(18);
 
+/// The device's own name behind a port, `ttyUSB0`, also where the port is a link to it, as those in
+/// `/dev/serial/by-id` and of udev's rules are.
+fn device_name(port: &str) -> Option<String> {
+    let own = Path::new(port).canonicalize().ok()?;
+    Some(own.file_name()?.to_str()?.to_string())
+}
+
 /// The timer of the adapter behind this port, ms; none where there is none, or on other systems.
 fn timer_ms(port: &str) -> Option<u32> {
-    let name = Path::new(port).canonicalize().ok()?;
-    let name = name.file_name()?.to_str()?;
+    let name = device_name(port)?;
     let file = format!("/sys/class/tty/{name}/device/latency_timer");
     std::fs::read_to_string(file).ok()?.trim().parse().ok()
 }
@@ -27,8 +33,7 @@ pub(super) fn held_back(port: &str, mut pings: Vec<Duration>) -> Option<Cause> {
         Some(ms) => format!("its latency timer is {ms} ms"),
         None => "answers take as long whatever their length".to_string(),
     };
-    let name = Path::new(port).file_name().and_then(|name| name.to_str());
-    let name = name.unwrap_or("ttyUSB0");
+    let name = device_name(port).unwrap_or("ttyUSB0".to_string());
     let median_ms = median.as_secs_f64() * 1e3;
     Some(cause(
         0.3,
@@ -41,6 +46,22 @@ pub(super) fn held_back(port: &str, mut pings: Vec<Duration>) -> Option<Cause> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn the_command_names_the_device_behind_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (device, link) = (
+            folder.path().join("ttyUSB7"),
+            folder.path().join("usb-FTDI-if00"),
+        );
+        std::fs::write(&device, "").unwrap();
+        std::os::unix::fs::symlink(&device, &link).unwrap();
+        let pings = vec![Duration::from_millis(16); 5];
+        let cause = held_back(link.to_str().unwrap(), pings).unwrap();
+        let command = "echo 1 | sudo tee /sys/bus/usb-serial/devices/ttyUSB7/latency_timer";
+        assert_eq!(cause.remedy, command);
+    }
 
     #[test]
     fn answers_that_take_16_ms_are_held_back() {

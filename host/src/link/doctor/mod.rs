@@ -5,8 +5,10 @@ mod latency_timer;
 mod no_response;
 mod partial_response;
 mod ping_test;
+mod read_test;
 
 pub use ping_test::PingTest;
+pub use read_test::{ReadTest, read_test};
 
 use super::port::SerialLink;
 use super::protocol::Protocol;

@@ -1,5 +1,6 @@
 //! Causes where some servos respond.
 
+use super::super::discover::id_ranges;
 use super::super::port::SerialLink;
 use super::super::protocol::Protocol;
 use super::super::servo_error::ServoError;
@@ -29,7 +30,10 @@ pub(super) fn partial_response<L: SerialLink>(
         causes.push(error_flags(test, supply, servos.protocol));
     }
     let mut delays = BTreeMap::<u16, Vec<u8>>::new();
-    for test in pings.iter().filter(|test| test.answered > 0) {
+    for test in pings
+        .iter()
+        .filter(|test| test.answered > 0 && !is_twice(test))
+    {
         if let Some(code @ 1..) = settings(servos, test.id, causes)? {
             delays.entry(code).or_default().push(test.id);
         }
@@ -42,7 +46,7 @@ pub(super) fn partial_response<L: SerialLink>(
 fn slow(code: u16, ids: &[u8]) -> Cause {
     let who = match ids {
         [id] => format!("servo {id} waits"),
-        several => format!("servos {} wait", ranges(several)),
+        several => format!("servos {} wait", id_ranges(several)),
     };
     cause(
         0.05 + f64::from(code) * 4e-4,
@@ -52,29 +56,16 @@ fn slow(code: u16, ids: &[u8]) -> Cause {
     )
 }
 
-/// Ids in words, `1-3, 7`; neighbours are drawn together.
-fn ranges(ids: &[u8]) -> String {
-    let mut runs: Vec<(u8, u8)> = Vec::new();
-    for id in ids {
-        match runs.last_mut() {
-            Some((_, last)) if last.checked_add(1) == Some(*id) => *last = *id,
-            _ => runs.push((*id, *id)),
-        }
-    }
-    let word = |(first, last): &(u8, u8)| match first == last {
-        true => first.to_string(),
-        false => format!("{first}-{last}"),
-    };
-    runs.iter().map(word).collect::<Vec<_>>().join(", ")
-}
-
 fn twice(test: &PingTest) -> Cause {
     let id = test.id;
+    let readings = test.readings.as_ref();
+    let readings = readings.map_or(String::new(), |test| format!("; {}", test.evidence()));
     cause(
         0.85,
         format!("two servos have the id {id}"),
         format!(
-            "of {PINGS} answers of id {id} {} were garbled, {} came double; those of others are sound",
+            "of {PINGS} answers of id {id} {} were garbled, {} came double{readings}; those of \
+             others are sound",
             test.garbled, test.doubled
         ),
         format!(
@@ -132,6 +123,15 @@ fn error_flags(test: &PingTest, supply: Option<u16>, protocol: Option<Protocol>)
     )
 }
 
+fn unknown(id: u8, number: u16) -> Cause {
+    cause(
+        0.3,
+        format!("servo {id} is of model {number}, whose control table is not known"),
+        "its model number says so; its registers were not read",
+        "docs/servos.md lists the models that are known; it is neither recorded nor moved",
+    )
+}
+
 /// Settings under which a good servo looks silent; its return delay, if it tells it.
 fn settings<L: SerialLink>(
     servos: &mut Servos<L>,
@@ -139,6 +139,11 @@ fn settings<L: SerialLink>(
     causes: &mut Vec<Cause>,
 ) -> Result<Option<u16>> {
     servos.tries = 3;
+    if let Err(ServoError::UnknownModel { number, .. }) = servos.known_model(id) {
+        causes.push(unknown(id, number));
+        servos.tries = 1;
+        return Ok(None);
+    }
     let level = servos.get(id, STATUS_LEVEL);
     let delay = servos.get(id, RETURN_DELAY);
     servos.tries = 1;

@@ -1,8 +1,9 @@
-//! Twenty pings to each servo.
+//! Twenty pings to each servo, and twenty readings of one that answers.
 
 use super::super::port::SerialLink;
 use super::super::servo_error::ServoError;
 use super::super::servos::Servos;
+use super::read_test::{ReadTest, read_test};
 use crate::error::Result;
 use handstand_shared::control_table::RETURN_DELAY;
 use serde::Serialize;
@@ -31,6 +32,8 @@ pub struct PingTest {
     pub corrupted_requests: usize,
     /// Its other error flags.
     pub error_flags: Vec<&'static str>,
+    /// Its answers to twenty readings; none where no ping was answered.
+    pub readings: Option<ReadTest>,
 }
 
 pub(super) fn ping_test<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> Result<PingTest> {
@@ -49,7 +52,8 @@ pub(super) fn ping_test<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> Result
                 test.answered += 1;
                 add(&mut test.error_flags, error.names());
                 alert |= error.has_alert();
-                test.doubled += usize::from(servos.stragglers()? > 0);
+                let surplus = servos.surplus();
+                test.doubled += usize::from(servos.stragglers()? > 0 || surplus > 0);
             }
             Err(ServoError::NoResponse { .. }) => match servos.stragglers()? {
                 0 => test.silent += 1,
@@ -66,6 +70,9 @@ pub(super) fn ping_test<L: SerialLink>(servos: &mut Servos<L>, id: u8) -> Result
             test.silent = PINGS;
             break;
         }
+    }
+    if test.answered > 0 {
+        test.readings = Some(read_test(servos, id)?);
     }
     if alert {
         // The alert says no more than that there is one; it comes with good data.

@@ -2,6 +2,7 @@
 
 use super::{
     GoalMotion, RecordingTally, Rms, RobotRecorder, RobotSample, SampleSource, ServoSilence,
+    ServoTravel,
 };
 use crate::error::{Error, Result};
 
@@ -16,6 +17,8 @@ pub struct FollowedMotion {
     pub tally: RecordingTally,
     /// What each servo did not say in these samples, in the order of ids.
     pub silences: Vec<ServoSilence>,
+    /// How far each was told to go and went while torque was on, in the order of ids.
+    pub travels: Vec<ServoTravel>,
     /// Measured minus commanded angle, rad.
     pub tracking: Rms,
     /// Measured minus recorded angle, rad.
@@ -39,7 +42,8 @@ pub enum MotionStop {
 /// each, `goes_on` is asked; `progress` is told the place in the motion.
 ///
 /// # Errors
-/// The device failed or fell silent, or the recording cannot be written.
+/// A goal that a servo cannot get to, before torque; the device failed or fell silent, or the
+/// recording cannot be written.
 pub fn follow(
     motion: &GoalMotion,
     source: &mut dyn SampleSource,
@@ -47,6 +51,7 @@ pub fn follow(
     goes_on: &dyn Fn() -> bool,
     progress: &dyn Fn(usize),
 ) -> Result<FollowedMotion> {
+    source.may_reach(&motion.ranges())?;
     source.arm()?;
     let mut follower = MotionFollower {
         source,
@@ -54,6 +59,7 @@ pub fn follow(
         goes_on,
         followed: FollowedMotion {
             silences: vec![ServoSilence::default(); motion.goals_rad[0].len()],
+            travels: vec![ServoTravel::default(); motion.goals_rad[0].len()],
             ..FollowedMotion::default()
         },
     };
@@ -131,8 +137,10 @@ impl MotionFollower<'_> {
                 continue;
             }
             let recorded = &motion.measured_rad[at];
-            for ((joint, goal), recorded) in sample.joints.iter().zip(&goals).zip(recorded) {
+            let joints = sample.joints.iter().zip(&mut followed.travels);
+            for (((joint, travel), goal), recorded) in joints.zip(&goals).zip(recorded) {
                 if let Some(now) = joint.position_rad {
+                    travel.count(*goal, now);
                     followed.tracking.add(now - goal);
                     let repeat = &mut followed.repeat;
                     recorded.iter().for_each(|then| repeat.add(now - then));

@@ -1,8 +1,9 @@
 //! Servos of Protocol 2.0 read together, through an adapter.
 
 use super::group_sample::{HEALTH, STATE, angle_of, code_of, health, state};
+use super::reach::{GoalLimits, GoalRange, SLACK_RAD};
 use super::sample::{RobotSample, ServoSample};
-use super::servo_watch::{ServoWatch, may_begin, may_move};
+use super::servo_watch::{ServoWatch, may_begin, may_move, takes_positions};
 use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
 use crate::link::{
@@ -11,7 +12,7 @@ use crate::link::{
 };
 use handstand_shared::control_table::models::ServoModel;
 use handstand_shared::control_table::x::*;
-use handstand_shared::control_table::{Item, RETURN_DELAY as DELAY};
+use handstand_shared::control_table::{Item, POSITION_LSB_RAD, RETURN_DELAY as DELAY};
 use std::time::Duration;
 
 /// Servos of Protocol 2.0 behind an adapter: one (fast) sync read a round for all, and supply and
@@ -129,6 +130,28 @@ impl<L: SerialLink> GroupAdapter<L> {
         codes.collect()
     }
 
+    /// Within which codes each servo takes goals: in position mode between its limits, else as far
+    /// as the register goes.
+    fn goal_limits(&mut self) -> Result<Vec<GoalLimits>> {
+        let modes = self.read_each(OPERATING_MODE)?;
+        let least = self.read_each(MIN_POSITION)?;
+        let most = self.read_each(MAX_POSITION)?;
+        let mut limits = Vec::new();
+        for (place, id) in self.ids.iter().enumerate() {
+            takes_positions(*id, modes[place])?;
+            let is_bound = modes[place] == 3;
+            limits.push(GoalLimits {
+                id: *id,
+                codes: match is_bound {
+                    true => (least[place], most[place]),
+                    false => (GOAL_POSITION.min, GOAL_POSITION.max),
+                },
+                registers: is_bound.then_some((MIN_POSITION.name, MAX_POSITION.name)),
+            });
+        }
+        Ok(limits)
+    }
+
     fn write_each(&mut self, item: Item, code: i32) -> Result<()> {
         let codes: Vec<(u8, i32)> = self.ids.iter().map(|id| (*id, code)).collect();
         Ok(self.servos.sync_write_codes(&item, &codes)?)
@@ -239,12 +262,23 @@ impl<L: SerialLink> SampleSource for GroupAdapter<L> {
         }))
     }
 
+    fn may_reach(&mut self, goals: &[GoalRange]) -> Result<()> {
+        let limits = self.goal_limits()?;
+        let mut pairs = limits.iter().zip(goals);
+        pairs.try_for_each(|(limits, goals)| limits.hold(*goals, code_of, angle_of))
+    }
+
     fn arm(&mut self) -> Result<()> {
-        let modes = self.read_each(OPERATING_MODE)?;
-        let positions = self.read_each(PRESENT_POSITION)?;
+        let limits = self.goal_limits()?;
+        let mut positions = self.read_each(PRESENT_POSITION)?;
+        let offsets = self.read_each(HOMING_OFFSET)?;
         let errors = self.read_each(HARDWARE_ERROR)?;
         for (place, id) in self.ids.iter().enumerate() {
-            may_move(*id, modes[place], positions[place], errors[place])?;
+            let is_counted = limits[place].registers.is_none();
+            let turn = is_counted.then_some(offsets[place]..offsets[place] + 4096);
+            may_move(*id, positions[place], turn, errors[place])?;
+            let slack = (SLACK_RAD / POSITION_LSB_RAD).round() as i32;
+            positions[place] = limits[place].held(positions[place], slack)?;
         }
         // What an earlier trip left would refuse the goals.
         self.write_each(BUS_WATCHDOG, 0)?;

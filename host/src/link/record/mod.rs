@@ -11,7 +11,9 @@ mod group_sample;
 mod latency;
 mod mcap;
 mod motion;
+mod one_sample;
 mod open;
+mod reach;
 mod read;
 mod recorder;
 mod report_reader;
@@ -29,7 +31,8 @@ pub use follow::{FollowedMotion, MotionStop, follow};
 pub use group_adapter::GroupAdapter;
 pub use latency::{LatencyBudget, RoundTrip, no_response};
 pub use motion::GoalMotion;
-pub use open::{SourceKind, SourceOptions, is_cm5, open_source, open_source_as};
+pub use open::{SourceKind, SourceOptions, answering, is_cm5, open_source, open_source_as};
+pub use reach::{GoalRange, ServoTravel};
 pub use read::{Recording, read};
 pub use recorder::{FileFormat, RobotRecorder};
 pub use report_reader::ReportReader;
@@ -43,6 +46,9 @@ pub use tally::{Quantiles, RecordingTally, Rms};
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod group_tests;
+#[cfg(test)]
+#[cfg(feature = "virtual-cm5")]
+mod reach_tests;
 #[cfg(test)]
 #[cfg(feature = "virtual-cm5")]
 mod silence_tests;

@@ -1,6 +1,6 @@
 //! The motion that a recording holds.
 
-use super::Recording;
+use super::{GoalRange, Recording};
 use crate::error::{Error, Place, Result};
 use std::path::Path;
 
@@ -84,6 +84,19 @@ impl GoalMotion {
         };
         motion.time_s.iter_mut().for_each(|time| *time -= begin);
         Ok(motion)
+    }
+
+    /// The range of each servo's goals while torque is on, in the order of ids; of all its goals
+    /// where it never is.
+    pub fn ranges(&self) -> Vec<GoalRange> {
+        let always_off = !self.torque_on.contains(&true);
+        let rows = || {
+            let rows = self.goals_rad.iter().zip(&self.torque_on);
+            rows.filter(move |(_, on)| **on || always_off)
+        };
+        let servos = 0..self.goals_rad.first().map_or(0, Vec::len);
+        let range = |place: usize| GoalRange::of(rows().map(|(goals, _)| goals[place]));
+        servos.filter_map(range).collect()
     }
 
     /// Goals at a time, straight between two samples; none after the end.

@@ -6,7 +6,8 @@ use super::latency::no_response;
 use super::source::SampleSource;
 use super::stream::Stream;
 use crate::error::Result;
-use crate::link::{Protocol, SerialLink, Servos, Session, SessionError};
+use crate::link::bridge::bridged;
+use crate::link::{Answering, OneServo, Protocol, SerialLink, Servos, Session, SessionError};
 use std::time::Duration;
 
 /// A line at least as fast as this is an adapter's on the servos' bus, baud.
@@ -70,7 +71,10 @@ pub fn open_source_as<L: SerialLink + 'static>(
 ) -> Result<(Box<dyn SampleSource>, SourceKind)> {
     let (period, watchdog) = (options.period, options.watchdog);
     if options.streams {
-        return Ok((Box::new(Stream::new(link, ids)?), SourceKind::Stream));
+        let mut link = link;
+        let known = cm5_servos(&mut link, ids)?;
+        let source = Stream::of_servos(link, ids, known)?;
+        return Ok((Box::new(source), SourceKind::Stream));
     }
     let mut servos = Servos::new(link);
     servos.protocol = options.protocol;
@@ -81,8 +85,49 @@ pub fn open_source_as<L: SerialLink + 'static>(
         let source = GroupAdapter::new(servos, ids, period, watchdog)?;
         return Ok((Box::new(source), SourceKind::Group { watchdog }));
     }
-    let source = Adapter::new(servos, ids, period);
+    let source = Adapter::new(servos, ids, period)?;
     Ok((Box::new(source), SourceKind::Adapter))
+}
+
+/// What the servos behind a CM-5 are; none of one that does not answer.
+///
+/// # Errors
+/// No firmware, or a servo that it does not know how to read.
+fn cm5_servos<L: SerialLink>(link: &mut L, ids: &[u8]) -> Result<Vec<Option<OneServo>>> {
+    let mut servos = bridged(link)?;
+    servos.protocol = Some(Protocol::One);
+    // A line that loses answers loses no servo for the whole recording.
+    servos.tries = 10;
+    let one = |id: &u8| match servos.cm5_servo(*id) {
+        Ok(servo) => Ok(Some(servo)),
+        Err(error) if error.is_transient() => Ok(None),
+        Err(error) => Err(error.into()),
+    };
+    ids.iter().map(one).collect()
+}
+
+/// Those of `ids` that answer through a CM-5, or an adapter if not `streams`; in the protocol that
+/// is set, or in either.
+///
+/// # Errors
+/// The device failed, or no CM-5 is there to stream.
+pub fn answering<L: SerialLink>(
+    link: &mut L,
+    ids: &[u8],
+    streams: bool,
+    protocol: Option<Protocol>,
+) -> Result<Answering> {
+    let mut servos = match streams {
+        true => bridged(link)?,
+        false => Servos::new(link),
+    };
+    // A CM-5 reads servos of Protocol 1.0 only.
+    servos.protocol = if streams {
+        Some(Protocol::One)
+    } else {
+        protocol
+    };
+    Ok(servos.answering(ids)?)
 }
 
 /// Whether Handstand's firmware answers. A line as fast as the servos' bus is an adapter on it,

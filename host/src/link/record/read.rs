@@ -17,6 +17,23 @@ pub struct Recording {
     pub torn: bool,
 }
 
+impl Recording {
+    /// What it says of these servos alone; none if it lacks one.
+    pub fn of_servos(&self, ids: &[u8]) -> Option<Recording> {
+        let place = |id: &u8| self.ids.iter().position(|own| own == id);
+        let places: Vec<usize> = ids.iter().map(place).collect::<Option<_>>()?;
+        let sample = |sample: &RobotSample| RobotSample {
+            joints: places.iter().map(|place| sample.joints[*place]).collect(),
+            ..sample.clone()
+        };
+        Some(Recording {
+            ids: ids.to_vec(),
+            samples: self.samples.iter().map(sample).collect(),
+            torn: self.torn,
+        })
+    }
+}
+
 /// Reads a CSV or MCAP recording; `-` is CSV from the standard input.
 ///
 /// # Errors

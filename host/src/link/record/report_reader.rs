@@ -1,7 +1,9 @@
 //! Samples from a CM-5's stream reports.
 
+use super::one_sample::{OddCodes, OneCodes};
 use super::sample::{GyroSample, RobotSample, ServoSample};
 use super::tick_clock::TickClock;
+use crate::link::OneServo;
 use handstand_shared::message::{Attitude, StreamReport, Telemetry};
 use handstand_shared::raw::Position;
 use std::time::Duration;
@@ -9,6 +11,7 @@ use std::time::Duration;
 /// Turns stream reports into samples of the servos in the servo list's order.
 #[derive(Debug)]
 pub struct ReportReader {
+    ids: Vec<u8>,
     begun: Duration,
     clock: TickClock,
     /// When the last report arrived, s.
@@ -18,19 +21,22 @@ pub struct ReportReader {
     gyro: Option<(u16, f64)>,
     /// The report before.
     last: Option<StreamReport>,
+    pub(super) odd: OddCodes,
 }
 
 impl ReportReader {
-    /// Of `count` servos; times count from `begun`, the gyro's zero and scale are the CM-5's.
-    pub fn new(count: usize, begun: Duration, account: &Telemetry) -> Self {
+    /// Of the servos `ids`; times count from `begun`, the gyro's zero and scale are the CM-5's.
+    pub fn new(ids: &[u8], begun: Duration, account: &Telemetry) -> Self {
         let scale = f64::from(account.gyro_scale) / 16.0 * Attitude::RATE_LSB_RAD_S;
         ReportReader {
             begun,
             clock: TickClock::default(),
             arrival_s: 0.0,
-            housekeeping: vec![ServoSample::default(); count],
+            housekeeping: vec![ServoSample::default(); ids.len()],
+            ids: ids.to_vec(),
             gyro: (scale != 0.0).then_some((account.gyro_zero, scale)),
             last: None,
+            odd: OddCodes::default(),
         }
     }
 
@@ -48,14 +54,17 @@ impl ReportReader {
                 continue;
             }
             if let Some(joint) = self.housekeeping.get_mut(place) {
-                let (speed, load) = (housekeeping.speed, housekeeping.load);
-                *joint = ServoSample::measured(
-                    u16::from_le_bytes(speed),
-                    u16::from_le_bytes(load),
-                    housekeeping.supply,
-                    housekeeping.temperature,
-                    housekeeping.error,
-                );
+                let codes = OneCodes {
+                    position: None,
+                    speed: u16::from_le_bytes(housekeeping.speed),
+                    load: u16::from_le_bytes(housekeeping.load),
+                    supply: housekeeping.supply,
+                    temperature: housekeeping.temperature,
+                    flags: housekeeping.error,
+                };
+                // Only servos with the AX-12's codes are behind a CM-5.
+                let servo = OneServo::ax_12(self.ids.get(place).copied().unwrap_or_default());
+                *joint = codes.sample(&servo, &mut self.odd);
             }
         }
         let joints = (0..count).map(|place| ServoSample {

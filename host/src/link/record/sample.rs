@@ -1,8 +1,5 @@
 //! Measured values at one moment.
 
-use crate::link::Reading;
-use handstand_shared::raw::{Position, Signed, Supply};
-
 /// One servo. What it did not say is none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ServoSample {
@@ -25,36 +22,6 @@ pub struct ServoSample {
 }
 
 impl ServoSample {
-    /// From the codes of the registers 38 to 43 and the error flags; position and goal are `None`.
-    pub fn measured(speed: u16, load: u16, supply: u8, temperature: u8, flags: u8) -> Self {
-        let signed = |code| f64::from(Signed(code).get());
-        ServoSample {
-            speed_rad_s: Some(signed(speed) * Signed::SPEED_LSB_RAD_S),
-            load: Some(signed(load) * Signed::OUTPUT_LSB),
-            supply_v: Some(Supply(supply).to_v()),
-            temperature_celsius: Some(f64::from(temperature)),
-            error: Some(flags),
-            ..ServoSample::default()
-        }
-    }
-
-    /// From a reading of the registers 36 to 43; `None` if it has other than 8 bytes.
-    pub fn of_reading(reading: &Reading) -> Option<Self> {
-        let data: [u8; 8] = reading.data[..].try_into().ok()?;
-        let [p0, p1, s0, s1, l0, l1, supply, temperature] = data;
-        let word = |low, high| u16::from_le_bytes([low, high]);
-        Some(ServoSample {
-            position_rad: Some(Position(word(p0, p1)).to_rad()),
-            ..ServoSample::measured(
-                word(s0, s1),
-                word(l0, l1),
-                supply,
-                temperature,
-                reading.error.byte(),
-            )
-        })
-    }
-
     /// Its values in the order of [`ServoSample::NAMES`].
     pub fn values(&self) -> [Option<f64>; 8] {
         [

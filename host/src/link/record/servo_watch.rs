@@ -81,12 +81,31 @@ impl ServoWatch {
     }
 }
 
-/// Whether a servo may be moved to positions: its mode takes them, it has no hardware error, and
-/// where its turns are counted it stands in the first.
+/// Whether an operating mode takes positions.
+///
+/// # Errors
+/// It does not, and what to do.
+pub(super) fn takes_positions(id: u8, mode: i32) -> Result<()> {
+    match mode {
+        3..=5 => Ok(()),
+        _ => Err(Error::device(
+            format!("servo {id} is in operating mode {mode}, which takes no positions"),
+            format!("handstand bus write {id} operating-mode 3 (position), torque off"),
+        )),
+    }
+}
+
+/// Whether a servo may be moved: it has no hardware error, and where its turns are counted it
+/// stands within `turn`, the codes of the first, which its homing offset shifts.
 ///
 /// # Errors
 /// Why not, and what to do.
-pub(super) fn may_move(id: u8, mode: i32, position: i32, error: i32) -> Result<()> {
+pub(super) fn may_move(
+    id: u8,
+    position: i32,
+    turn: Option<std::ops::Range<i32>>,
+    error: i32,
+) -> Result<()> {
     if error != 0 {
         let names: Vec<&str> = x::hardware_errors(error as u8).collect();
         return Err(Error::device(
@@ -94,15 +113,14 @@ pub(super) fn may_move(id: u8, mode: i32, position: i32, error: i32) -> Result<(
             format!("remove the cause, then: handstand bus reboot {id}"),
         ));
     }
-    if !matches!(mode, 3..=5) {
+    if let Some(turn) = turn
+        && !turn.contains(&position)
+    {
+        let (first, last) = (turn.start, turn.end - 1);
         return Err(Error::device(
-            format!("servo {id} is in operating mode {mode}, which takes no positions"),
-            format!("handstand bus write {id} operating-mode 3 (position), torque off"),
-        ));
-    }
-    if mode != 3 && !(0..4096).contains(&position) {
-        return Err(Error::device(
-            format!("servo {id} stands at code {position}, outside the turn from 0 to 4095"),
+            format!(
+                "servo {id} stands at code {position}, outside the turn from {first} to {last}"
+            ),
             format!(
                 "a motion's angles are within that turn: torque off, turn it back, or \
                  handstand bus reboot {id}, which forgets the turns"

@@ -28,6 +28,10 @@ impl SampleSource for Fading {
         Ok(sample)
     }
 
+    fn may_reach(&mut self, goals: &[GoalRange]) -> Result<()> {
+        self.source.may_reach(goals)
+    }
+
     fn arm(&mut self) -> Result<()> {
         self.source.arm()
     }

@@ -1,5 +1,6 @@
 //! Where samples come from, and where goals go.
 
+use super::reach::GoalRange;
 use super::sample::RobotSample;
 use crate::error::Result;
 use crate::link::LineWriter;
@@ -34,6 +35,18 @@ pub trait SampleSource {
     /// controller keeps the time.
     fn arrival_s(&self, newest: &RobotSample) -> f64 {
         newest.time_s
+    }
+
+    /// Whether the servos can get to the goals of a motion, which lie within these ranges, in the
+    /// order of ids; asked before torque.
+    ///
+    /// # Errors
+    /// A servo that takes no goals or whose limits leave one out; it does not answer.
+    fn may_reach(&mut self, goals: &[GoalRange]) -> Result<()>;
+
+    /// What is to be said of the samples so far, a line each.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
     }
 
     /// Torque on, every servo's goal where it stands.

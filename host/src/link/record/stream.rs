@@ -1,10 +1,13 @@
 //! Servos read by a CM-5 with Handstand's firmware.
 
+use super::reach::{GoalRange, one_held, one_may_reach};
 use super::report_reader::ReportReader;
-use super::sample::RobotSample;
+use super::sample::{RobotSample, ServoSample};
 use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
-use crate::link::{SerialLink, ServoError, Session, account_words, condition_words, is_let_down};
+use crate::link::{
+    OneServo, SerialLink, ServoError, Session, account_words, condition_words, is_let_down,
+};
 use handstand_shared::message::{
     ArmLimits, Command, Condition, Mode, Report, ServoList, Subject, Telemetry,
 };
@@ -23,6 +26,8 @@ const TELEMETRY: Command = Command::Ask(Subject::Telemetry);
 pub struct Stream<L: SerialLink> {
     session: Session<L>,
     ids: Vec<u8>,
+    /// What each is; none of one that did not answer when it was asked.
+    servos: Vec<Option<OneServo>>,
     reader: ReportReader,
     /// Goals that were sent and not yet obeyed, each with the number of its frame.
     sent: VecDeque<(u8, Vec<Position>)>,
@@ -44,11 +49,26 @@ pub fn emergency_off<L: SerialLink>(session: &mut Session<L>) -> Option<Emergenc
 }
 
 impl<L: SerialLink> Stream<L> {
-    /// Greets the firmware, names the servos, starts the stream.
+    /// Greets the firmware, names the servos, starts the stream. They are taken for AX-12 with
+    /// their factory's limits, as the firmware does: `open_source` asks them first, and gives what
+    /// it heard to [`Stream::of_servos`].
     ///
     /// # Errors
     /// No firmware, or it refuses.
     pub fn new(link: L, ids: &[u8]) -> Result<Self> {
+        let servos = ids.iter().map(|id| Some(OneServo::ax_12(*id)));
+        Stream::of_servos(link, ids, servos.collect())
+    }
+
+    /// The same of servos that were asked for model and limits, as [`Servos::cm5_servo`] does, in
+    /// the order of ids. What one says that did not answer then is left out, and it is not moved:
+    /// nobody knows what its codes mean.
+    ///
+    /// # Errors
+    /// As [`Stream::new`].
+    ///
+    /// [`Servos::cm5_servo`]: crate::link::Servos::cm5_servo
+    pub fn of_servos(link: L, ids: &[u8], servos: Vec<Option<OneServo>>) -> Result<Self> {
         if ids.is_empty() || ids.len() > SERVOS {
             return Err(Error::usage(
                 format!("{} servos", ids.len()),
@@ -70,9 +90,10 @@ impl<L: SerialLink> Stream<L> {
         })?;
         let begun = session.link().now();
         Ok(Stream {
-            reader: ReportReader::new(ids.len(), begun, &telemetry),
+            reader: ReportReader::new(ids, begun, &telemetry),
             session,
             ids: ids.to_vec(),
+            servos,
             sent: VecDeque::new(),
             goals: None,
             stood: None,
@@ -103,6 +124,18 @@ impl<L: SerialLink> Stream<L> {
             .position(|(sequence, _)| *sequence == obeyed);
         if let Some((_, goals)) = known.and_then(|at| self.sent.drain(..=at).next_back()) {
             self.goals = Some(goals);
+        }
+    }
+
+    /// # Errors
+    /// A servo that did not tell its model.
+    fn all_known(&self) -> Result<()> {
+        match self.servos.iter().position(Option::is_none) {
+            Some(place) => Err(ServoError::NoResponse {
+                id: self.ids[place],
+            }
+            .into()),
+            None => Ok(()),
         }
     }
 
@@ -141,12 +174,34 @@ impl<L: SerialLink> SampleSource for Stream<L> {
             self.take_obeyed(report.obeyed);
             let goals = self.goals.as_deref();
             let goal_rad = |place: usize| Some(goals?.get(place)?.to_rad());
-            return Ok(Some(self.reader.sample(time, &report, goal_rad)));
+            let mut sample = self.reader.sample(time, &report, goal_rad);
+            for (joint, servo) in sample.joints.iter_mut().zip(&self.servos) {
+                if servo.is_none() {
+                    *joint = ServoSample::default();
+                }
+            }
+            return Ok(Some(sample));
         }
     }
 
     fn arrival_s(&self, _newest: &RobotSample) -> f64 {
         self.reader.arrival_s
+    }
+
+    fn may_reach(&mut self, goals: &[GoalRange]) -> Result<()> {
+        let mut pairs = self.servos.iter().flatten().zip(goals);
+        self.all_known()?;
+        pairs.try_for_each(|(servo, goals)| one_may_reach(servo, *goals))
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = self.reader.odd.remarks();
+        if let Err(error) = self.all_known() {
+            remarks.push(format!(
+                "{error} when it was asked for its model: its columns are empty"
+            ));
+        }
+        remarks
     }
 
     fn arm(&mut self) -> Result<()> {
@@ -163,6 +218,9 @@ impl<L: SerialLink> SampleSource for Stream<L> {
         // The CM-5 would move the others without it.
         if let Some((&id, _)) = self.ids.iter().zip(heard).find(|(_, heard)| !heard) {
             return Err(ServoError::NoResponse { id }.into());
+        }
+        for (servo, stood) in (self.servos.iter().flatten()).zip(self.stood.iter().flatten()) {
+            one_held(servo, i32::from(stood.0))?;
         }
         let token = self.session.hello.token;
         let limits = ArmLimits::FULL;

@@ -11,7 +11,8 @@ fn recorded(path: &Path, samples: usize) -> Vec<RobotSample> {
         Servos::new(SimLink::adapter("ids=1-3,delay=0,dead=2").unwrap()),
         &[1, 2, 3],
         Duration::from_millis(10),
-    );
+    )
+    .unwrap();
     let mut recorder = RobotRecorder::create(path, &[1, 2, 3], false).unwrap();
     source.arm().unwrap_err();
     let samples: Vec<RobotSample> = (0..samples)
