@@ -1,7 +1,8 @@
 //! Which joints of a robot make a planar chain: those in a row with parallel axes.
 
+use super::choice::hinged;
 use super::frame::PARALLEL_RAD;
-use super::planar::{chain_of, hinged};
+use super::planar::chain_of;
 use super::tree::RobotTree;
 use nalgebra::Vector3;
 use std::collections::HashSet;

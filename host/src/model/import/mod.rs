@@ -3,6 +3,7 @@
 //! A robot in space becomes the planar chain of some of its joints: [`import`]. What a model does
 //! not have is listed with the reason, never left out silently.
 
+mod choice;
 mod frame;
 mod groups;
 mod inertia;
