@@ -10,6 +10,9 @@ use pyo3::types::PyDict;
 use std::cmp::Ordering;
 use std::path::PathBuf;
 
+/// Any object.
+type Object<'py> = Bound<'py, PyAny>;
+
 /// A motion, in SI and the log's convention of angles.
 ///
 /// Parameters
@@ -163,7 +166,7 @@ impl Motion {
     /// Copies and pickles carry every sample, and the file that it came from.
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>, Bound<'py, PyAny>))> {
+    ) -> PyResult<(Object<'py>, (Object<'py>, Object<'py>))> {
         let (py, own) = (slf.py(), slf.get());
         let source = &own.inner.source;
         let path = source.path.to_string_lossy().into_owned();

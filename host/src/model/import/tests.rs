@@ -195,6 +195,10 @@ fn what_makes_no_planar_chain_is_refused_with_its_place() {
         ("<sdf/>", "<sdf>"),
         ("<robot/>", "no <link>"),
         ("<robot><link name='a'/></robot>", "no joint turns"),
+        (
+            "<mujoco><worldbody><body><joint name='x'/><joint name='y'/></body></worldbody></mujoco>",
+            "no joint turns or slides alone in its own body",
+        ),
         ("<robot><link/></robot>", "lacks name"),
         ("<robot><link name='a'/><link name='b'/></robot>", "2 links"),
         (
