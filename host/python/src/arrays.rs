@@ -5,23 +5,43 @@ use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-/// Numbers, one after the other.
+/// Numbers, one after the other; a column or a row of a table is that, too.
 pub fn numbers(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let array: PyArrayLike1<'_, f64, AllowTypeChange> = given.extract().map_err(|_| {
-        usage(
-            format!("`{name}` is not a row of numbers"),
-            "give a one-dimensional array or a list of numbers",
-        )
-    })?;
-    Ok(array.as_array().iter().copied().collect())
+    if let Ok(row) = given.extract::<PyArrayLike1<'_, f64, AllowTypeChange>>() {
+        return Ok(row.as_array().iter().copied().collect());
+    }
+    if let Ok(table) = given.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>() {
+        let table = table.as_array();
+        if let [1, _] | [_, 1] = table.shape() {
+            return Ok(table.iter().copied().collect());
+        }
+    }
+    Err(usage(
+        format!("`{name}` is not a row of numbers"),
+        "give a one-dimensional array or a list of numbers",
+    ))
 }
 
-/// A row per joint; a single row is that of one joint.
-pub fn rows(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>> {
+/// A row per joint; a single row is that of one joint, and so is a column of so many samples.
+pub fn rows(
+    name: &str,
+    given: &Bound<'_, PyAny>,
+    samples: Option<usize>,
+) -> PyResult<Vec<Vec<f64>>> {
     if let Ok(array) = given.extract::<PyArrayLike2<'_, f64, AllowTypeChange>>() {
-        let rows = array.as_array();
-        let rows = rows.outer_iter().map(|row| row.iter().copied().collect());
-        return Ok(rows.collect());
+        let table = array.as_array();
+        let [height, width] = [table.nrows(), table.ncols()];
+        if samples.is_some_and(|samples| height == samples && width != samples) {
+            if width == 1 {
+                return Ok(vec![table.iter().copied().collect()]);
+            }
+            return Err(usage(
+                format!("`{name}` has shape ({height}, {width}): a row per sample"),
+                format!("give a row per joint, its transpose `{name}.T`"),
+            ));
+        }
+        let rows = table.outer_iter();
+        return Ok(rows.map(|row| row.iter().copied().collect()).collect());
     }
     if let Ok(row) = numbers(name, given) {
         return Ok(vec![row]);
@@ -37,6 +57,7 @@ pub fn rows_or_none(
     name: &str,
     given: Option<&Bound<'_, PyAny>>,
     joints: usize,
+    samples: usize,
 ) -> PyResult<Vec<Option<Vec<f64>>>> {
     let Some(given) = given else {
         return Ok(vec![None; joints]);
@@ -47,7 +68,8 @@ pub fn rows_or_none(
         false => Vec::new(),
     };
     if !items.iter().any(|item| item.is_none()) {
-        return Ok(rows(name, given)?.into_iter().map(Some).collect());
+        let rows = rows(name, given, Some(samples))?;
+        return Ok(rows.into_iter().map(Some).collect());
     }
     let row = |item: &Bound<'_, PyAny>| match item.is_none() {
         true => Ok(None),

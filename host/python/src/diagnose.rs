@@ -1,7 +1,7 @@
 //! `diagnose`: which physical effect does the model lack?
 
 use crate::errors::exception;
-use crate::logs::{Learned, horizon, learned_and_held_out};
+use crate::logs::{Learned, horizon, judging, learned_and_held_out};
 use crate::model::Model;
 use crate::value::{framed, plain};
 use crate::work;
@@ -9,7 +9,7 @@ use handstand::compare::compare_all;
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, FittedEffect, LogDiagnosis, diagnose_logs};
 use handstand::fitting::{Horizon, Progress, effect_ids, free_parameters};
-use handstand::log::{Split, split};
+use handstand::log::Split;
 use handstand::report::{Report, ReportProvenance, diagnosis_json, diagnosis_text, html};
 use pyo3::prelude::*;
 
@@ -17,26 +17,53 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "handstand")]
 #[derive(Debug, Clone)]
 pub struct Diagnosis {
-    inner: handstand::diagnose::Diagnosis,
+    pub inner: handstand::diagnose::Diagnosis,
     model: Model,
-    split: Split,
+    pub split: Split,
 }
 
-/// Diagnoses what a model lacks. Files are first checked for wrong signs, zeros, units and drives
-/// (`trust_log=True` leaves that out). Without `hold_out` the last third of the motions judges.
-/// `known` names values that were measured by themselves, `without` effects to leave out;
-/// `within_s` are the seconds that it may take. `progress(what, done, total)` is called while it
-/// works.
+/// Diagnoses what a model lacks.
+///
+/// Parameters
+/// ----------
+/// model : Model
+/// logs : file name, path, Motion, DataFrame, or a list of them
+///     What is learned from. Files are first checked for wrong signs, zeros, units and drives.
+/// holdout : as `logs`
+///     What judges; without it the last third of the motions. What is learned from is refused.
+/// without : list of str
+///     Effects to leave out.
+/// known : list of str
+///     Addresses of values that were measured by themselves.
+/// seed : int
+///     Of the search's random starts.
+/// tolerance_rad : float
+///     A model whose error is below is good enough, rad.
+/// horizon_s : float or "whole"
+///     The longest that models run without correction, s.
+/// trust_log : bool
+///     Leave the check of files out.
+/// within_s : float
+///     The seconds that it may take: the best verdict of that time.
+/// progress : callable
+///     Called as `progress(what, done, total)`.
+///
+/// Returns
+/// -------
+/// Diagnosis
 #[pyfunction]
-#[pyo3(signature = (model, logs, *, hold_out=None, without=Vec::new(), known=Vec::new(),
+#[pyo3(signature = (model, logs, *, holdout=None, without=Vec::new(), known=Vec::new(),
                     seed=None, tolerance_rad=None, horizon_s=None, trust_log=false,
-                    within_s=None, progress=None))]
+                     within_s=None, progress=None, hold_out=None),
+       text_signature = "(model, logs, *, holdout=None, without=..., known=..., seed=None, \
+                         tolerance_rad=None, horizon_s=None, trust_log=False, within_s=None, \
+                         progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub fn diagnose(
     py: Python<'_>,
     model: &Bound<'_, Model>,
     logs: &Bound<'_, PyAny>,
-    hold_out: Option<&Bound<'_, PyAny>>,
+    holdout: Option<&Bound<'_, PyAny>>,
     without: Vec<String>,
     known: Vec<String>,
     seed: Option<u64>,
@@ -45,8 +72,9 @@ pub fn diagnose(
     trust_log: bool,
     within_s: Option<f64>,
     progress: Option<&Bound<'_, PyAny>>,
+    hold_out: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Diagnosis> {
-    let model = model.get().clone();
+    let model = model.borrow().clone();
     let defaults = DiagnoseOptions::default();
     let options = DiagnoseOptions {
         seed: seed.unwrap_or(defaults.seed),
@@ -61,7 +89,7 @@ pub fn diagnose(
         within_s: within_s.map(seconds).transpose().map_err(exception)?,
         ..defaults
     };
-    let logs = learned_and_held_out(logs, hold_out, &model)?;
+    let logs = learned_and_held_out(logs, judging(py, holdout, hold_out)?, &model)?;
     let found = work::run(py, progress, move |report| {
         let options = DiagnoseOptions {
             stop: report.stop_switch().clone(),
@@ -83,7 +111,8 @@ fn seconds(within_s: f64) -> handstand::Result<f64> {
     }
 }
 
-fn found(
+/// Diagnoses logs that were read.
+pub fn found(
     model: Model,
     logs: Learned,
     options: &DiagnoseOptions,
@@ -101,7 +130,8 @@ fn found(
             if let Some(horizon) = options.horizon {
                 horizon.check(&model.inner, training.iter().chain(&held_out))?;
             }
-            let split = split(training, held_out);
+            let split = Split::told_apart(training, held_out)?;
+            let split = handstand::log::split(split.training, split.held_out);
             let (training, held_out) = (split.training.clone(), split.held_out.clone());
             let model = &model.inner;
             LogDiagnosis {

@@ -1,7 +1,7 @@
 //! `gains`: a regulator for a model, and the loop simulated with all its effects.
 
 use crate::arrays::{matrix, numbers, rows};
-use crate::errors::{HandstandError, exception, usage};
+use crate::errors::{exception, failed, usage};
 use crate::model::Model;
 use crate::value::plain;
 use crate::work::{self, WorkReport};
@@ -27,9 +27,28 @@ pub struct Gains {
     verification: Verification,
 }
 
-/// Gains that balance a model at a pose: upright without `pose_rad`. `q` and `r` are a number, a
-/// diagonal or a matrix (100 and 1 without). `ts_s=None` designs in continuous time. The loop is
-/// then simulated with every effect of the model, those included that the design leaves out.
+/// Gains that balance a model at a pose. The loop is then simulated with every effect of the model,
+/// those included that the design leaves out.
+///
+/// Parameters
+/// ----------
+/// model : Model
+/// q, r : a number, a diagonal or a matrix
+///     Weights of states and inputs; 100 and 1 without.
+/// ts_s : float or None
+///     Sampling time, s; `None` designs in continuous time.
+/// delay_s : float
+///     From sample to torque, s; that of the model without.
+/// pose_rad : array
+///     The pose, rad, an angle per joint; upright without.
+/// balance : bool
+///     Take the balanced pose that is nearest.
+/// progress : callable
+///     Called as `progress(what, done, total)`.
+///
+/// Returns
+/// -------
+/// Gains
 #[pyfunction]
 #[pyo3(signature = (model, *, q=None, r=None, ts_s=Some(0.01), delay_s=None, pose_rad=None,
                     balance=false, progress=None),
@@ -47,7 +66,7 @@ pub fn gains(
     balance: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Gains> {
-    let model = model.get().clone();
+    let model = model.borrow().clone();
     let standard = Request::standard(&model.inner);
     let weight = |name, given: Option<&Bound<'_, PyAny>>, otherwise: &Weight| match given {
         Some(given) => weight(name, given),
@@ -118,7 +137,7 @@ fn weight(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Weight> {
     if let Ok(diagonal) = numbers(name, given) {
         return Ok(Weight::Diagonal(diagonal));
     }
-    let rows = rows(name, given)?;
+    let rows = rows(name, given, None)?;
     let size = rows.len();
     match rows.iter().all(|row| row.len() == size) {
         true => Ok(Weight::Matrix(DMatrix::from_fn(size, size, |i, j| {
@@ -244,9 +263,7 @@ impl Gains {
 impl Gains {
     fn fixed(&self) -> PyResult<&handstand::synth::Fixed> {
         self.design.fixed.as_ref().ok_or_else(|| {
-            HandstandError::new_err(
-                "gains in continuous time have no fixed-point law\nremedy: give ts_s",
-            )
+            failed("gains in continuous time have no fixed-point law\nremedy: give ts_s")
         })
     }
 }

@@ -7,8 +7,13 @@
 mod arrays;
 mod compare;
 mod diagnose;
+mod draft;
+mod drift;
+mod effects;
 mod errors;
+mod experiment;
 mod gains;
+mod log_check;
 mod logs;
 mod model;
 mod motion;
@@ -25,9 +30,17 @@ mod native {
     #[pymodule_export]
     use crate::diagnose::{Diagnosis, diagnose};
     #[pymodule_export]
-    use crate::errors::{DataError, HandstandError, UsageError};
+    use crate::draft::{Draft, init};
+    #[pymodule_export]
+    use crate::drift::drift;
+    #[pymodule_export]
+    use crate::effects::effects;
+    #[pymodule_export]
+    use crate::experiment::{Proposal, next};
     #[pymodule_export]
     use crate::gains::{Gains, gains};
+    #[pymodule_export]
+    use crate::log_check::{LogCheck, log_check};
     #[pymodule_export]
     use crate::logs::read_log;
     #[pymodule_export]
@@ -38,4 +51,10 @@ mod native {
     use crate::refit::{Refit, add, fit};
     #[pymodule_export]
     use crate::simulate::simulate;
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn version(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }

@@ -5,8 +5,9 @@ use crate::model::Model;
 use crate::motion::Motion;
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, LogSet, Split, read};
+use pyo3::exceptions::PyDeprecationWarning;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
 
 /// What was given.
@@ -17,23 +18,109 @@ pub enum Given {
     Motions(Vec<handstand::log::Motion>),
 }
 
-/// A file's motions, as the model declares its columns: `a.csv`, or `a.csv:100-899` for data rows
-/// 100 to 899.
+/// A log's motions, as the model declares its columns.
+///
+/// Parameters
+/// ----------
+/// path : file name, path or DataFrame
+///     `a.csv`, or `a.csv:100-899` for data rows 100 to 899. A DataFrame's columns are named as in
+///     a file; an index that has a name is a column.
+/// model : Model
+///     Names the columns and their units.
+///
+/// Returns
+/// -------
+/// list of Motion
 #[pyfunction]
 pub fn read_log(path: &Bound<'_, PyAny>, model: &Bound<'_, Model>) -> PyResult<Vec<Motion>> {
-    let motions = read(&[request(path)?], &model.get().inner.log).map_err(exception)?;
-    let motions = motions.into_iter().map(|inner| Motion { inner });
-    Ok(motions.collect())
+    let motions = motions_of(path, &model.borrow())?;
+    Ok(motions.into_iter().map(Motion::read).collect())
 }
 
-fn request(path: &Bound<'_, PyAny>) -> PyResult<LogRequest> {
+/// The motions of a file or a DataFrame.
+fn motions_of(log: &Bound<'_, PyAny>, model: &Model) -> PyResult<Vec<handstand::log::Motion>> {
+    if !is_frame(log)? {
+        return read(&[request(log)?], &model.inner.log).map_err(exception);
+    }
+    let file = FrameFile::of(log)?;
+    let motions = read(&[file.request()], &model.inner.log);
+    let mut motions = motions.map_err(|error| exception(FrameFile::named(error)))?;
+    for motion in &mut motions {
+        motion.source.path = FrameFile::NAME.into();
+    }
+    Ok(motions)
+}
+
+/// Whether it is a table as pandas has it: columns, and a way to write them.
+pub fn is_frame(given: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(given.hasattr("columns")? && given.hasattr("to_csv")? && given.hasattr("index")?)
+}
+
+/// A table as a file: it is read as every log is.
+pub struct FrameFile {
+    folder: tempfile::TempDir,
+}
+
+impl FrameFile {
+    /// What a table of pandas is called where a file has a name.
+    pub const NAME: &str = "DataFrame.csv";
+
+    /// Writes the table, with every digit; an index that has a name as its first column.
+    pub fn of(frame: &Bound<'_, PyAny>) -> PyResult<FrameFile> {
+        let folder = tempfile::tempdir();
+        let folder = folder.map_err(|error| {
+            exception(handstand::Error::file(std::env::temp_dir(), "write", error))
+        })?;
+        let has_name = !frame.getattr("index")?.getattr("name")?.is_none();
+        let options = PyDict::new(frame.py());
+        options.set_item("index", has_name)?;
+        frame.call_method("to_csv", (folder.path().join(Self::NAME),), Some(&options))?;
+        Ok(FrameFile { folder })
+    }
+
+    /// All of it.
+    pub fn request(&self) -> LogRequest {
+        LogRequest::whole(self.folder.path().join(Self::NAME))
+    }
+
+    /// An error of the file as one of the table.
+    pub fn named(error: handstand::Error) -> handstand::Error {
+        match error {
+            handstand::Error::Data { mut place, reason } => {
+                place.file = Self::NAME.into();
+                handstand::Error::Data { place, reason }
+            }
+            error => error,
+        }
+    }
+}
+
+/// What judges: `holdout`, or `hold_out` as it was called.
+pub fn judging<'a, 'py>(
+    py: Python<'py>,
+    holdout: Option<&'a Bound<'py, PyAny>>,
+    hold_out: Option<&'a Bound<'py, PyAny>>,
+) -> PyResult<Option<&'a Bound<'py, PyAny>>> {
+    let Some(old) = hold_out else {
+        return Ok(holdout);
+    };
+    if holdout.is_some() {
+        return Err(usage("`holdout` is given twice", "leave `hold_out` out"));
+    }
+    let category = py.get_type::<PyDeprecationWarning>();
+    PyErr::warn(py, &category, c"`hold_out` is now called `holdout`", 1)?;
+    Ok(Some(old))
+}
+
+/// A file's name, as the command line has it.
+pub fn request(path: &Bound<'_, PyAny>) -> PyResult<LogRequest> {
     match path.cast::<PyString>() {
         Ok(text) => text.to_str()?.parse().map_err(exception),
         Err(_) => Ok(LogRequest::whole(path.extract::<PathBuf>().map_err(
             |_| {
                 usage(
                     format!("{path} is no log"),
-                    "give file names, paths, motions, or a list of them",
+                    "give file names, paths, motions, DataFrames, or a list of them",
                 )
             },
         )?)),
@@ -44,7 +131,8 @@ fn request(path: &Bound<'_, PyAny>) -> PyResult<LogRequest> {
 pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
     let is_one = logs.is_instance_of::<PyString>()
         || logs.is_instance_of::<Motion>()
-        || logs.hasattr("__fspath__")?;
+        || logs.hasattr("__fspath__")?
+        || is_frame(logs)?;
     let items: Vec<Bound<'_, PyAny>> = match is_one {
         true => vec![logs.clone()],
         false => logs.try_iter()?.collect::<PyResult<_>>()?,
@@ -52,7 +140,11 @@ pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
     if items.is_empty() {
         return Err(usage("no log is given", "name at least one"));
     }
-    if !items.iter().any(|item| item.is_instance_of::<Motion>()) {
+    let mut files = true;
+    for item in &items {
+        files &= !item.is_instance_of::<Motion>() && !is_frame(item)?;
+    }
+    if files {
         let requests = items.iter().map(request).collect::<PyResult<_>>()?;
         return Ok(Given::Files(requests));
     }
@@ -64,10 +156,7 @@ pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
                 fits(&motion, model)?;
                 motions.push(motion);
             }
-            Err(_) => {
-                let columns = &model.inner.log;
-                motions.extend(read(&[request(item)?], columns).map_err(exception)?);
-            }
+            Err(_) => motions.extend(motions_of(item, model)?),
         }
     }
     Ok(Given::Motions(motions))
@@ -154,7 +243,9 @@ impl Learned {
     pub fn named(self, model: &Model) -> PyResult<Split> {
         match self {
             Learned::Files(set) => set.read(&model.inner.log).map_err(exception),
-            Learned::Motions(training, held_out) => Ok(Split { training, held_out }),
+            Learned::Motions(training, held_out) => {
+                Split::told_apart(training, held_out).map_err(exception)
+            }
         }
     }
 }

@@ -2,12 +2,42 @@
 
 use crate::arrays::{matrix, numbers, per_joint, rows, rows_or_none};
 use crate::errors::usage;
+use crate::value::counted;
 use handstand::log::{LEAST_ROWS, MotionSource};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::cmp::Ordering;
+use std::path::PathBuf;
+
+/// Any object.
+type Object<'py> = Bound<'py, PyAny>;
 
 /// A motion, in SI and the log's convention of angles.
+///
+/// Parameters
+/// ----------
+/// time_s : array of shape (samples,)
+///     Times, s, increasing.
+/// position_rad : array of shape (joints, samples), or (samples,) of one joint
+///     Measured angles, rad (m of a slide). Not-a-number is a gap: nothing is compared there.
+/// input : array of the same shape, or a list with `None` for passive joints
+///     What each drive is told, in SI of its kind (N m, duty, rad, rad/s), without gaps.
+/// velocity_rad_s, rate_rad_s : as `input`
+///     Measured speeds, and what rate sensors beside those of the angles read, rad/s.
+/// supply_v : array of shape (samples,)
+///     Supply, V.
+/// torque_on : list of bool
+///     Whether the drives are energised, at each sample.
+/// payload_kg : float
+///     Known mass bolted to the last link, kg.
+/// turned : bool
+///     Whether the rig stood turned by 180 degrees about the vertical.
+/// name : str
+///     For reports.
+///
+/// Columns of shape (samples, 1) are taken for one joint. Motions are equal where they hold the
+/// same samples, gaps included, under one name.
 #[pyclass(frozen, module = "handstand")]
 #[derive(Debug, Clone)]
 pub struct Motion {
@@ -16,12 +46,13 @@ pub struct Motion {
 
 #[pymethods]
 impl Motion {
-    /// A motion out of arrays: a row per joint, gaps as not-a-number. `input` is what each drive is
-    /// told, in SI of its kind (N m, duty, rad, rad/s), `None` for passive joints.
     #[new]
     #[pyo3(signature = (time_s, position_rad, *, input=None, velocity_rad_s=None, rate_rad_s=None,
                         supply_v=None, torque_on=None, payload_kg=0.0, turned=false,
-                        name="motion"))]
+                        name="motion", _source=None),
+           text_signature = "(time_s, position_rad, *, input=None, velocity_rad_s=None, \
+                             rate_rad_s=None, supply_v=None, torque_on=None, payload_kg=0.0, \
+                             turned=False, name='motion')")]
     #[expect(
         clippy::too_many_arguments,
         reason = "keywords of a Python constructor"
@@ -37,22 +68,26 @@ impl Motion {
         payload_kg: f64,
         turned: bool,
         name: &str,
+        _source: Option<(PathBuf, String, usize, usize)>,
     ) -> PyResult<Motion> {
         let time_s = numbers("time_s", time_s)?;
-        let position_rad = rows("position_rad", position_rad)?;
+        let samples = time_s.len();
+        let position_rad = rows("position_rad", position_rad, Some(samples))?;
         let joints = position_rad.len();
+        let (path, sha256, first, last) =
+            _source.unwrap_or((name.into(), String::new(), 1, samples));
         let inner = handstand::log::Motion {
             name: name.to_string(),
             source: MotionSource {
-                path: name.into(),
-                sha256: String::new(),
-                lines: (1, time_s.len()),
+                path,
+                sha256,
+                lines: (first, last),
             },
             time_s,
             position_rad,
-            velocity_rad_s: rows_or_none("velocity_rad_s", velocity_rad_s, joints)?,
-            rate_rad_s: rows_or_none("rate_rad_s", rate_rad_s, joints)?,
-            input: rows_or_none("input", input, joints)?,
+            velocity_rad_s: rows_or_none("velocity_rad_s", velocity_rad_s, joints, samples)?,
+            rate_rad_s: rows_or_none("rate_rad_s", rate_rad_s, joints, samples)?,
+            input: rows_or_none("input", input, joints, samples)?,
             supply_v: supply_v
                 .map(|given| numbers("supply_v", given))
                 .transpose()?,
@@ -112,6 +147,49 @@ impl Motion {
         self.inner.payload_kg
     }
 
+    /// Whether the drives were energised, at each sample, where logged.
+    #[getter]
+    fn torque_on(&self) -> Option<Vec<bool>> {
+        self.inner.torque_on.clone()
+    }
+
+    /// Whether the rig stood turned by 180 degrees about the vertical.
+    #[getter]
+    fn turned(&self) -> bool {
+        self.inner.turned
+    }
+
+    fn __eq__(&self, other: PyRef<'_, Motion>) -> bool {
+        self.inner.name == other.inner.name && self.inner.holds_the_same(&other.inner)
+    }
+
+    /// Copies and pickles carry every sample, and the file that it came from.
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Object<'py>, (Object<'py>, Object<'py>))> {
+        let (py, own) = (slf.py(), slf.get());
+        let source = &own.inner.source;
+        let path = source.path.to_string_lossy().into_owned();
+        let given = PyDict::new(py);
+        for key in [
+            "input",
+            "velocity_rad_s",
+            "rate_rad_s",
+            "supply_v",
+            "torque_on",
+        ] {
+            given.set_item(key, slf.getattr(key)?)?;
+        }
+        given.set_item("payload_kg", own.inner.payload_kg)?;
+        given.set_item("turned", own.inner.turned)?;
+        given.set_item("name", &own.inner.name)?;
+        let (first, last) = source.lines;
+        given.set_item("_source", (path, &source.sha256, first, last))?;
+        let partial = py.import("functools")?.getattr("partial")?;
+        let made = partial.call((slf.get_type(),), Some(&given))?;
+        Ok((made, (slf.getattr("time_s")?, slf.getattr("position_rad")?)))
+    }
+
     fn __len__(&self) -> usize {
         self.inner.len()
     }
@@ -119,8 +197,9 @@ impl Motion {
     fn __repr__(&self) -> String {
         let joints = self.inner.position_rad.len();
         format!(
-            "<Motion {:?}: {joints} joints, {} samples, {:.2} s>",
+            "<Motion {:?}: {}, {} samples, {:.2} s>",
             self.inner.name,
+            counted(joints, "joint"),
             self.inner.len(),
             self.inner.duration_s()
         )
@@ -128,6 +207,12 @@ impl Motion {
 }
 
 impl Motion {
+    /// A motion as the library has it, with a place for every joint's rate.
+    pub fn read(mut inner: handstand::log::Motion) -> Motion {
+        inner.rate_rad_s.resize(inner.position_rad.len(), None);
+        Motion { inner }
+    }
+
     /// A motion whose arrays belong together.
     pub fn of(inner: handstand::log::Motion) -> PyResult<Motion> {
         is_whole(&inner)?;
@@ -160,7 +245,11 @@ fn is_whole(motion: &handstand::log::Motion) -> PyResult<()> {
     for (name, rows) in per_joint {
         if rows.len() != joints {
             return Err(usage(
-                format!("`{name}` has {} rows for {joints} joints", rows.len()),
+                format!(
+                    "`{name}` has {} for {}",
+                    counted(rows.len(), "row"),
+                    counted(joints, "joint")
+                ),
                 "give a row per joint, and None for joints without",
             ));
         }

@@ -1,16 +1,17 @@
 //! `add` and `fit`: a model with effects it lacked, or with values fitted to logs.
 
-use crate::errors::{HandstandError, exception};
-use crate::logs::{check, horizon, learned_and_held_out};
+use crate::errors::{exception, failed};
+use crate::logs::{check, horizon, judging, learned_and_held_out};
 use crate::model::Model;
 use crate::value::plain;
 use crate::work::{self, WorkReport};
 use handstand::fitting::{
-    Addition, FittedValue, Refitted, Undetermined, add_effects, candidates_named, free_parameters,
-    refit, with_refitted,
+    Addition, Refitted, Undetermined, add_effects, candidates_named, free_parameters, refit,
+    with_refitted,
 };
 use handstand::report::{refitted_json, refitted_text};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 /// A refitted model, its values with intervals, and the error before and after.
 #[pyclass(frozen, module = "handstand")]
@@ -22,24 +23,45 @@ pub struct Refit {
     before: &'static str,
 }
 
-/// Adds effects (`"coulomb@1"`, or a list) to a model and fits their values along with those that
-/// the model frees. Without `hold_out` the motions that were fitted also judge. Effects that do not
-/// lower the error are refused.
+/// Adds effects to a model, and fits their values along with those that the model frees. Effects
+/// that do not lower the error are refused.
+///
+/// Parameters
+/// ----------
+/// model : Model
+/// effects : str or list of str
+///     `"coulomb@1"`, or those of a diagnosis.
+/// logs : file name, path, Motion, DataFrame, or a list of them
+/// holdout : as `logs`
+///     What judges; without it the motions that were fitted. What is fitted is refused.
+/// horizon_s : float or "whole"
+///     The longest that models run without correction, s.
+/// progress : callable
+///     Called as `progress(what, done, total)`.
+///
+/// Returns
+/// -------
+/// Refit
 #[pyfunction]
-#[pyo3(signature = (model, effects, logs, *, hold_out=None, horizon_s=None, progress=None))]
+#[pyo3(signature = (model, effects, logs, *, holdout=None, horizon_s=None, progress=None,
+                    hold_out=None),
+       text_signature = "(model, effects, logs, *, holdout=None, horizon_s=None, progress=None)")]
+#[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub fn add(
     py: Python<'_>,
     model: &Bound<'_, Model>,
     effects: &Bound<'_, PyAny>,
     logs: &Bound<'_, PyAny>,
-    hold_out: Option<&Bound<'_, PyAny>>,
+    holdout: Option<&Bound<'_, PyAny>>,
     horizon_s: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
+    hold_out: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Refit> {
-    let model = model.get().clone();
+    let model = model.borrow().clone();
     let names = names(effects)?;
     let candidates = candidates_named(&names, &model.inner).map_err(exception)?;
-    let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
+    let split =
+        learned_and_held_out(logs, judging(py, holdout, hold_out)?, &model)?.named(&model)?;
     let horizon = horizon(horizon_s)?;
     check(
         horizon,
@@ -57,7 +79,7 @@ pub fn add(
             refitted: *refitted,
             before: "for the model refitted without",
         }),
-        Addition::Unhelpful(why) => Err(HandstandError::new_err(format!(
+        Addition::Unhelpful(why) => Err(failed(format!(
             "{}\nremedy: {}",
             why.why(&names),
             why.remedy()
@@ -66,23 +88,45 @@ pub fn add(
     }
 }
 
-/// Fits values of a model to logs: those that it frees, or those of `free` (`"link1.com_m"`,
-/// `"coulomb@1.torque_nm"`).
+/// Fits values of a model to logs.
+///
+/// Parameters
+/// ----------
+/// model : Model
+/// logs : file name, path, Motion, DataFrame, or a list of them
+/// free : str or list of str
+///     Addresses of the values (`"link1.com_m"`, `"coulomb@1.torque_nm"`); those that the model
+///     frees without it.
+/// holdout : as `logs`
+///     What judges; without it the motions that were fitted. What is fitted is refused.
+/// horizon_s : float or "whole"
+///     The longest that models run without correction, s.
+/// progress : callable
+///     Called as `progress(what, done, total)`.
+///
+/// Returns
+/// -------
+/// Refit
 #[pyfunction]
-#[pyo3(signature = (model, logs, *, free=None, hold_out=None, horizon_s=None, progress=None))]
+#[pyo3(signature = (model, logs, *, free=None, holdout=None, horizon_s=None, progress=None,
+                    hold_out=None),
+       text_signature = "(model, logs, *, free=None, holdout=None, horizon_s=None, progress=None)")]
+#[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub fn fit(
     py: Python<'_>,
     model: &Bound<'_, Model>,
     logs: &Bound<'_, PyAny>,
     free: Option<&Bound<'_, PyAny>>,
-    hold_out: Option<&Bound<'_, PyAny>>,
+    holdout: Option<&Bound<'_, PyAny>>,
     horizon_s: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
+    hold_out: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Refit> {
-    let model = model.get().clone();
+    let model = model.borrow().clone();
     let named = free.map(names).transpose()?.unwrap_or_default();
     let free = free_parameters(&model.inner, &named).map_err(exception)?;
-    let split = learned_and_held_out(logs, hold_out, &model)?.named(&model)?;
+    let split =
+        learned_and_held_out(logs, judging(py, holdout, hold_out)?, &model)?.named(&model)?;
     let horizon = horizon(horizon_s)?;
     check(
         horizon,
@@ -106,7 +150,7 @@ pub fn fit(
 }
 
 /// One name, or a list of them.
-fn names(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+pub fn names(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     match given.extract::<String>() {
         Ok(one) => Ok(vec![one]),
         Err(_) => given.extract(),
@@ -114,7 +158,7 @@ fn names(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
 }
 
 fn undetermined(why: &Undetermined) -> PyErr {
-    HandstandError::new_err(format!(
+    failed(format!(
         "{why}\nremedy: fit fewer values, or bring motions that show them"
     ))
 }
@@ -127,11 +171,15 @@ impl Refit {
         self.model.clone()
     }
 
-    /// Fitted values by their addresses: `(value, low, high)`, the interval at 95 %.
+    /// Fitted values by their addresses: `value`, `low` and `high`, the interval at 95 %.
     #[getter]
-    fn values(&self) -> std::collections::BTreeMap<String, (f64, f64, f64)> {
-        let entry = |v: &FittedValue| (v.path.clone(), (v.value, v.low, v.high));
-        self.refitted.values.iter().map(entry).collect()
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let named = py.import("handstand._values")?.getattr("FittedValue")?;
+        let values = PyDict::new(py);
+        for own in &self.refitted.values {
+            values.set_item(&own.path, named.call1((own.value, own.low, own.high))?)?;
+        }
+        Ok(values)
     }
 
     /// Root-mean-square error before, rad.

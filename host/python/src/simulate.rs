@@ -11,10 +11,27 @@ use handstand::model::{MeasuredSignal, hanging};
 use handstand::sim::{Memory, Plant, Start, predict};
 use pyo3::prelude::*;
 
-/// Simulates a model at the times `time_s`. `input` is a row per joint (or one row for one joint),
-/// each value held to the next sample, `None` for passive joints. It starts at `angle_rad` (each
-/// joint as the model counts it; hanging without) with `speed_rad_s` (at rest without). The motion
-/// returned holds what the sensors would read.
+/// Simulates a model with all its effects.
+///
+/// Parameters
+/// ----------
+/// model : Model
+/// time_s : array
+///     Times of the samples, s.
+/// input : array of shape (joints, samples), or a list with `None` for passive joints
+///     What each drive is told, in SI of its kind (N m, duty, rad, rad/s); each value holds to the
+///     next sample.
+/// angle_rad, speed_rad_s : array
+///     Where it starts, a value per joint, as the model counts it; hanging at rest without.
+/// supply_v : array
+///     Supply, V.
+/// payload_kg : float
+///     Mass bolted to the last link, kg.
+///
+/// Returns
+/// -------
+/// Motion
+///     What the sensors would read.
 #[pyfunction]
 #[pyo3(signature = (model, time_s, *, input=None, angle_rad=None, speed_rad_s=None, supply_v=None,
                     payload_kg=0.0))]
@@ -29,7 +46,7 @@ pub fn simulate(
     supply_v: Option<&Bound<'_, PyAny>>,
     payload_kg: f64,
 ) -> PyResult<Motion> {
-    let model = model.get().clone();
+    let model = model.borrow().clone();
     let joints = model.inner.link_count();
     let time_s = numbers("time_s", time_s)?;
     let samples = time_s.len();
@@ -44,7 +61,7 @@ pub fn simulate(
         position_rad: vec![vec![0.0; samples]; joints],
         velocity_rad_s: vec![None; joints],
         rate_rad_s: vec![None; joints],
-        input: rows_or_none("input", input, joints)?,
+        input: rows_or_none("input", input, joints, samples)?,
         supply_v: supply_v
             .map(|given| numbers("supply_v", given))
             .transpose()?,

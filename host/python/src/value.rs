@@ -17,3 +17,11 @@ pub fn framed(page: &str) -> String {
          sandbox=\"allow-scripts\"></iframe>"
     )
 }
+
+/// "1 joint", "2 joints".
+pub fn counted(count: usize, what: &str) -> String {
+    match count {
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
+    }
+}

@@ -1,6 +1,6 @@
 //! Work on a thread of its own, so that Python goes on: progress is told, Ctrl-C ends it.
 
-use crate::errors::HandstandError;
+use crate::errors::failed;
 use handstand::fitting::{Abandoned, Progress, StopSwitch};
 use pyo3::prelude::*;
 use std::panic::resume_unwind;
@@ -56,7 +56,7 @@ pub fn run<T: Send + 'static>(
     watched?;
     match py.detach(|| thread.join()) {
         Ok(result) => Ok(result),
-        Err(_) => Err(HandstandError::new_err(
+        Err(_) => Err(failed(
             "the work ended in a fault of the program; what it printed says where",
         )),
     }

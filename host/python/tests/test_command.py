@@ -22,9 +22,40 @@ def command(*words: str) -> dict[str, object]:
 
 def test_diagnosis(model_file: str, logs: list[str]) -> None:
     by_command = command("diagnose", model_file, *logs[:2], "--holdout", logs[2])
-    diagnosis = hs.diagnose(hs.Model.load(model_file), logs[:2], hold_out=logs[2]).to_dict()
+    diagnosis = hs.diagnose(hs.Model.load(model_file), logs[:2], holdout=logs[2]).to_dict()
     del by_command["closed_loop"]
     assert diagnosis == by_command
+
+
+def test_log_check(model_file: str, logs: list[str]) -> None:
+    by_command = command("log", "check", model_file, *logs)
+    assert hs.log_check(hs.Model.load(model_file), logs).to_dict() == by_command
+
+
+def test_init(logs: list[str]) -> None:
+    by_command = command("init", logs[0], "--mass", "0.3", "--length", "0.25")
+    assert hs.init(logs[0], mass_kg=[0.3], length_m=[0.25]).to_dict() == by_command
+
+
+def test_drift(model_file: str, logs: list[str]) -> None:
+    by_command = command("drift", model_file, *logs, "--free", "link1.com_m")
+    model = hs.Model.load(model_file)
+    assert hs.drift(model, logs, free="link1.com_m") == by_command
+
+
+def test_effects() -> None:
+    program = os.environ.get("HANDSTAND")
+    if program is None:
+        pytest.skip("the variable HANDSTAND does not name the program")
+    ran = subprocess.run([program, "effects", "--json"], capture_output=True, text=True, check=True)
+    assert hs.effects() == json.loads(ran.stdout)
+
+
+def test_next(model_file: str, logs: list[str]) -> None:
+    words = ("--value", "link1.com_m", "--seconds", "5")
+    by_command = command("next", model_file, *logs, *words)["proposal"]
+    found = hs.next(hs.Model.load(model_file), logs, value="link1.com_m", seconds=5.0)
+    assert found.to_dict()["proposal"] == by_command
 
 
 def test_comparison(model_file: str, logs: list[str]) -> None:

@@ -1,5 +1,7 @@
 """What is wrong is said, with the remedy; nothing crashes; Ctrl-C ends long work."""
 
+import errno
+import pickle
 import signal
 import subprocess
 import sys
@@ -19,8 +21,27 @@ def test_a_wrong_model_file_is_refused_with_its_place(tmp_path: Path) -> None:
     file.write_text(ARM.format(effect="").replace('"hanging"', '"sideways"'))
     with pytest.raises(hs.DataError, match=r"wrong\.toml:4:\d+: .*sideways.*\nremedy: "):
         hs.Model.load(file)
-    with pytest.raises(OSError, match="missing.toml"):
-        hs.Model.load("missing.toml")
+
+
+def test_every_error_has_one_root(model: hs.Model, tmp_path: Path) -> None:
+    missing = str(tmp_path / "missing.toml")
+    with pytest.raises(FileNotFoundError, match="missing.toml: cannot read.*\\nremedy") as told:
+        hs.Model.load(missing)
+    assert isinstance(told.value, hs.HandstandError) and isinstance(told.value, hs.FileError)
+    assert told.value.errno == errno.ENOENT and told.value.filename == missing
+    with pytest.raises(FileNotFoundError):
+        hs.compare(model, missing)
+    for kind in (hs.UsageError, hs.DataError, hs.FileError, hs.AddressError):
+        assert issubclass(kind, hs.HandstandError)
+    assert issubclass(hs.UsageError, ValueError) and issubclass(hs.DataError, ValueError)
+    with pytest.raises(IsADirectoryError):
+        hs.Model.load(tmp_path)
+    copied = pickle.loads(pickle.dumps(told.value))
+    assert (copied.errno, copied.filename, str(copied)) == (
+        told.value.errno,
+        told.value.filename,
+        str(told.value),
+    )
 
 
 def test_nothing_is_overwritten_unasked(model: hs.Model, tmp_path: Path) -> None:
@@ -41,7 +62,7 @@ def test_nothing_is_overwritten_unasked(model: hs.Model, tmp_path: Path) -> None
         ({"position_rad": "text"}, "position_rad"),
         ({"input": np.zeros(99)}, "99 samples"),
         ({"input": np.full(100, np.nan)}, "no number"),
-        ({"input": [None, None]}, "2 rows for 1 joints"),
+        ({"input": [None, None]}, "2 rows for 1 joint"),
         ({"payload_kg": float("inf")}, "payload"),
         ({"time_s": [*range(99), float("inf")]}, "infinite"),
         ({"position_rad": np.full(100, np.inf)}, "infinite"),

@@ -34,7 +34,7 @@ def test_diagnosis_names_the_friction_and_add_lowers_the_error(
 ) -> None:
     steps: list[tuple[str, int, int]] = []
     diagnosis = hs.diagnose(
-        model, motions[:2], hold_out=motions[2], progress=lambda *step: steps.append(step)
+        model, motions[:2], holdout=motions[2], progress=lambda *step: steps.append(step)
     )
     assert diagnosis.verdict == "named"
     assert diagnosis.effects == ["coulomb@1"]
@@ -42,7 +42,7 @@ def test_diagnosis_names_the_friction_and_add_lowers_the_error(
     assert "Coulomb" in str(diagnosis)
     assert "<iframe" in diagnosis._repr_html_() and "Coulomb" in diagnosis.html()
 
-    added = hs.add(model, diagnosis.effects, motions[:2], hold_out=motions[2])
+    added = hs.add(model, diagnosis.effects, motions[:2], holdout=motions[2])
     assert added.error_after_rad < 0.05 * added.error_before_rad
     value, low, high = added.values["coulomb@1.torque_nm"]
     assert low <= 0.05 <= high and abs(value - 0.05) < 1e-3
@@ -56,7 +56,7 @@ def test_an_effect_that_does_not_help_is_refused(
     truth: hs.Model, motions: list[hs.Motion]
 ) -> None:
     with pytest.raises(hs.HandstandError, match="remedy"):
-        hs.add(truth, "cable_spring@1", motions[:2], hold_out=motions[2])
+        hs.add(truth, "cable_spring@1", motions[:2], holdout=motions[2])
 
 
 def test_fit_finds_the_value(truth: hs.Model, motions: list[hs.Motion]) -> None:

@@ -4,15 +4,17 @@
 //! Reads URDF and MJCF. The model is the planar chain of the joints named, from the base to the
 //! tip; without names that with most hinges. Masses, moments of inertia, armature, damping,
 //! friction, springs and actuators are carried over; other joints are held where the file has
-//! them. What is not carried is listed on stderr, and in the file.
+//! them. What is not carried is listed on stderr, and in the file, as are axes that are parallel
+//! but for rounding, and moments of inertia that no body has. Joints that make no planar chain are
+//! refused with those of the robot that do.
 //!
 //! ```console
 //! $ handstand import robot.urdf --joints shoulder elbow -o arm.toml
 //! ```
 //!
 //! Without `-o` the file's text goes to stdout. `--json` prints `format` (`urdf`, `mjcf`), `file`
-//! (or null), `text` (null where a file was written), `joints` and `not_carried` (`part`, `name`,
-//! `why`).
+//! (or null), `text` (null where a file was written), `joints`, `not_carried` and `notes` (`part`,
+//! `name`, `line`, `why`).
 
 use super::{ExitStatus, Talk, input};
 use handstand::Result;
@@ -52,12 +54,11 @@ pub fn run(args: &ImportArgs, talk: &Talk) -> Result<ExitStatus> {
     };
     let imported = import(&input::text(&args.robot)?, &args.robot, &plan)?;
     talk.say(&format!("joints: {}", imported.joints.join(", ")));
+    for note in &imported.notes {
+        talk.say(&format!("note: {note}"));
+    }
     for part in &imported.left_out {
-        let of = part
-            .name
-            .as_ref()
-            .map_or(String::new(), |name| format!(" of {name}"));
-        talk.say(&format!("not carried: {}{of} ({})", part.part, part.why));
+        talk.say(&format!("not carried: {part}"));
     }
     if let Some(file) = &args.output {
         talk.write(file, &imported.toml, args.force)?;
@@ -69,6 +70,7 @@ pub fn run(args: &ImportArgs, talk: &Talk) -> Result<ExitStatus> {
         "text": (!written).then_some(&imported.toml),
         "joints": imported.joints,
         "not_carried": imported.left_out,
+        "notes": imported.notes,
     });
     if talk.json {
         talk.data(&data)?;

@@ -23,8 +23,8 @@ use super::Talk;
 use super::input;
 use handstand::diagnose::conventions::{self, ModelFile};
 use handstand::log::{LogFinding, LogRequest, Severity};
+use handstand::report::{log_check_json, log_check_text};
 use handstand::{Model, Result};
-use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// What can be done with logs.
@@ -60,21 +60,7 @@ pub struct LogCheckArgs {
 /// Prints the findings.
 fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
     let findings = findings(&args.logs, &args.model)?;
-    let (verdict, sentence) = match findings.iter().map(|finding| finding.severity).max() {
-        Some(Severity::Refuse) => (
-            "refused",
-            "refused: mend what is refused above, then check again",
-        ),
-        Some(Severity::Warn) => ("warned", "fit for use, with the warnings above"),
-        Some(Severity::Note) | None => ("clean", "fit for use"),
-    };
-    let data: Vec<Value> = findings.iter().map(finding).collect();
-    let data = json!({ "verdict": verdict, "findings": data });
-    talk.result(&data, || {
-        let lines = findings.iter().map(ToString::to_string);
-        let lines: Vec<String> = lines.chain([sentence.to_string()]).collect();
-        lines.join("\n")
-    })?;
+    talk.result(&log_check_json(&findings), || log_check_text(&findings))?;
     Ok(ExitStatus::answer(!refused(&findings)))
 }
 
@@ -97,23 +83,4 @@ pub fn findings(logs: &[LogRequest], file: &Path) -> Result<Vec<LogFinding>> {
 pub fn refused(findings: &[LogFinding]) -> bool {
     let mut severities = findings.iter().map(|finding| finding.severity);
     severities.any(|severity| severity == Severity::Refuse)
-}
-
-fn finding(finding: &LogFinding) -> Value {
-    let place = finding.place.as_ref();
-    json!({
-        "severity": finding.severity.name(),
-        "kind": finding.kind,
-        "file": place.map(|place| place.file.to_string_lossy()),
-        "line": place.and_then(|place| place.line),
-        "column": place.and_then(|place| place.column),
-        "what": finding.what,
-        "remedy": finding.remedy,
-        "proof": finding.proof.map(|proof| json!({
-            "before_rad": proof.before_rad,
-            "after_rad": proof.after_rad,
-            "before_share": proof.before_share,
-            "after_share": proof.after_share,
-        })),
-    })
 }

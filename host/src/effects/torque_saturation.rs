@@ -26,7 +26,7 @@ static INFO: EffectInfo = EffectInfo {
         meaning: "largest torque in either direction",
         off: Some(f64::INFINITY),
         typical: (0.5, 2.0),
-        bounds: (0.001, 100.0),
+        bounds: (0.001, 10000.0),
         starts: &[0.3, 1.0, 3.0, 0.1, 0.03],
     }],
     looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is \

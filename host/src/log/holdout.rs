@@ -1,6 +1,8 @@
 //! Splits motions into training and held-out ones.
 
 use super::Motion;
+use super::log_set::NAME_ONCE;
+use crate::error::{Error, Result};
 
 /// Motions to learn from and motions to be judged by; none is in both.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -10,6 +12,30 @@ pub struct Split {
     /// Predicted only. Empty when there was a single motion: then no claim about new motions can be
     /// made.
     pub held_out: Vec<Motion>,
+}
+
+impl Split {
+    /// Motions to learn from and motions to judge by, which came without their files.
+    ///
+    /// # Errors
+    /// A motion that is in both, whatever it is called.
+    pub fn told_apart(training: Vec<Motion>, held_out: Vec<Motion>) -> Result<Split> {
+        for held in &held_out {
+            let Some(fitted) = training.iter().find(|motion| motion.holds_the_same(held)) else {
+                continue;
+            };
+            let (held, fitted) = (&held.name, &fitted.name);
+            let message = match held == fitted {
+                true => format!("{held} is fitted and held out"),
+                false => format!(
+                    "{held} is held out, and shares rows with {fitted}, which is fitted; the two \
+                     motions hold the same samples"
+                ),
+            };
+            return Err(Error::usage(message, NAME_ONCE));
+        }
+        Ok(Split { training, held_out })
+    }
 }
 
 /// Splits by whole motions. `explicit_holdout` is held out if there is any; otherwise the last
@@ -55,6 +81,27 @@ mod tests {
             assert_eq!(split.training.len(), all - held);
             assert!(all == 0 || split.training[0].name == "m0");
         }
+    }
+
+    #[test]
+    fn a_motion_that_is_fitted_is_not_held_out() {
+        let all = vec![motion("a", 20), motion("b", 30)];
+        let told = |held: Motion| Split::told_apart(all.clone(), vec![held]);
+        let said = |held: Motion| told(held).unwrap_err().to_string();
+        assert_eq!(said(motion("a", 20)), "a is fitted and held out");
+        let copy = Motion {
+            name: "copy".into(),
+            rate_rad_s: vec![None; 9],
+            ..motion("b", 30)
+        };
+        assert!(said(copy).contains("copy is held out, and shares rows with b"));
+        let mut other = motion("a", 20);
+        other.position_rad[0][7] += 1e-12;
+        assert!(told(other).is_ok());
+        let mut gap = all.clone();
+        gap[0].position_rad[0][3] = f64::NAN;
+        let held = vec![gap[0].clone()];
+        assert!(Split::told_apart(gap, held).is_err(), "gaps are equal");
     }
 
     #[test]

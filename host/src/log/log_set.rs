@@ -9,6 +9,10 @@ use super::same_rows::SizedRequest;
 use crate::error::{Error, Result};
 use crate::model::LogColumns;
 
+/// What to do about rows that are fitted and held out.
+pub(super) const NAME_ONCE: &str = "name each row once, a range includes its end: what was learned \
+                                    from proves nothing";
+
 /// Logs to learn from and logs to judge by, which share no row.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct LogSet {
@@ -61,9 +65,7 @@ impl LogSet {
                         by.words()
                     ),
                 };
-                let remedy = "name each row once, a range includes its end: what was learned \
-                              from proves nothing";
-                return Err(Error::usage(message, remedy));
+                return Err(Error::usage(message, NAME_ONCE));
             }
         }
         Ok(())

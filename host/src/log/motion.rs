@@ -44,6 +44,36 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Whether both hold the same samples, bit by bit, whatever they are called.
+    pub fn holds_the_same(&self, other: &Motion) -> bool {
+        let bits = |row: &[f64]| row.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        let same =
+            |own: &[f64], theirs: &[f64]| own.len() == theirs.len() && bits(own) == bits(theirs);
+        let rows = |own: &[Vec<f64>], theirs: &[Vec<f64>]| {
+            own.len() == theirs.len()
+                && own
+                    .iter()
+                    .zip(theirs)
+                    .all(|(own, theirs)| same(own, theirs))
+        };
+        // A joint without is none, whether the list says so or ends before it.
+        let known = |all: &[Option<Vec<f64>>]| -> Vec<(usize, Vec<u64>)> {
+            let known = all.iter().enumerate();
+            known
+                .filter_map(|(joint, row)| Some((joint, bits(row.as_deref()?))))
+                .collect()
+        };
+        same(&self.time_s, &other.time_s)
+            && rows(&self.position_rad, &other.position_rad)
+            && known(&self.velocity_rad_s) == known(&other.velocity_rad_s)
+            && known(&self.rate_rad_s) == known(&other.rate_rad_s)
+            && known(&self.input) == known(&other.input)
+            && self.supply_v.as_deref().map(bits) == other.supply_v.as_deref().map(bits)
+            && self.torque_on == other.torque_on
+            && self.payload_kg.to_bits() == other.payload_kg.to_bits()
+            && self.turned == other.turned
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.time_s.len()

@@ -74,6 +74,27 @@ pub fn add_effect(
 /// # Errors
 /// The text is no model, has no such parameter, or a value is impossible there.
 pub fn set_values(text: &str, path: &Path, values: &[(ParameterPath, f64)]) -> Result<String> {
+    with_values(text, path, values, number)
+}
+
+/// As [`set_values`], with every digit: what is read back is what was set.
+///
+/// # Errors
+/// As [`set_values`].
+pub fn set_values_exactly(
+    text: &str,
+    path: &Path,
+    values: &[(ParameterPath, f64)],
+) -> Result<String> {
+    with_values(text, path, values, Value::from)
+}
+
+fn with_values(
+    text: &str,
+    path: &Path,
+    values: &[(ParameterPath, f64)],
+    written: fn(f64) -> Value,
+) -> Result<String> {
     let model = Model::parse(text, path)?;
     let mut document = document(text, path)?;
     for (parameter, value) in values {
@@ -84,7 +105,7 @@ pub fn set_values(text: &str, path: &Path, values: &[(ParameterPath, f64)]) -> R
         if let ParameterPath::Link { index, .. } = parameter {
             about_centre_of_mass(table, model.links[*index].inertia_kg_m2);
         }
-        put(table, parameter.key(), number(*value));
+        put(table, parameter.key(), written(*value));
     }
     checked(document, path)
 }

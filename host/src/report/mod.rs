@@ -8,6 +8,7 @@ mod failures;
 mod file_names;
 mod headline;
 mod json;
+mod log_check;
 mod outcomes;
 pub(crate) mod page;
 mod parameters;
@@ -27,6 +28,7 @@ mod words;
 
 pub use file_names::{file_name, file_names};
 pub use json::{diagnosis_json, gains_json, json};
+pub use log_check::{log_check_json, log_check_text};
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
 pub use proposal::{next_steps, proposal_text};

@@ -37,6 +37,8 @@ enum Chore {
     Mutants(mutants::Args),
     /// Install Python's package in an environment of its own, and run its tests
     Python,
+    /// Build Python's package as one wheel for every CPython from 3.10 on, into target/wheels
+    Wheel,
     /// Build the CM-5's program: ELF, HEX and BIN
     Firmware(image::Args),
     /// Measure the firmware: cycles, times, losses and frames
@@ -89,6 +91,7 @@ fn main() -> ExitCode {
         Chore::Fuzz(args) => return code(fuzz::run(&args)),
         Chore::Mutants(args) => return code(mutants::run(&args)),
         Chore::Python => return code(python_package::run()),
+        Chore::Wheel => return code(python_package::wheel()),
         Chore::Firmware(args) => return code(image::run(&args)),
         Chore::BenchFirmware(words) => ("bench-firmware", words),
         Chore::BenchLab(words) => ("bench-lab", words),

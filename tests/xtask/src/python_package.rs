@@ -1,4 +1,5 @@
-//! `cargo xtask python`: Python's package, installed as its users install it, and its tests.
+//! `cargo xtask python`: Python's package, installed as its users install it, and its tests;
+//! `cargo xtask wheel`: the file that installs it where there is no compiler.
 
 use handstand_xtask::program;
 use handstand_xtask::{cargo, root};
@@ -16,7 +17,7 @@ fn python() -> Command {
 
 /// Whether what builds and tests the package is installed.
 pub fn is_ready() -> bool {
-    let modules = "import maturin, control, ipykernel, mypy, nbclient, numpy, pytest";
+    let modules = "import maturin, control, ipykernel, mypy, nbclient, numpy, pandas, pytest";
     let output = python().args(["-c", modules]).output();
     output.is_ok_and(|output| output.status.success())
 }
@@ -65,6 +66,23 @@ pub fn run() -> bool {
                 .arg(root().join("host/python/tests"))
                 .env("PYTHONDONTWRITEBYTECODE", "1")
                 .env("HANDSTAND", program.unwrap_or_default()),
+        )
+}
+
+/// Builds the package, optimised, as a wheel; whether that went well.
+pub fn wheel() -> bool {
+    if !is_ready() {
+        install();
+    }
+    let maturin = ["-m", "maturin", "build", "--release", "--manifest-path"];
+    is_ready()
+        && program::run(
+            python()
+                .args(maturin)
+                .arg(root().join("host/python/Cargo.toml"))
+                .arg("--out")
+                .arg(root().join("target/wheels"))
+                .env("PATH", with_own_programs()),
         )
 }
 

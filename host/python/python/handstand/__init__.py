@@ -2,48 +2,74 @@
 
 >>> import handstand as hs
 >>> model = hs.Model.load("arm.toml")
->>> diagnosis = hs.diagnose(model, ["a.csv", "b.csv"], hold_out="c.csv")
->>> better = hs.add(model, diagnosis.effects, ["a.csv", "b.csv"], hold_out="c.csv").model
+>>> diagnosis = hs.diagnose(model, ["a.csv", "b.csv"], holdout="c.csv")
+>>> better = hs.add(model, diagnosis.effects, ["a.csv", "b.csv"], holdout="c.csv").model
 >>> hs.gains(better).k
 
 Angles are in rad, times in s, torques in N m. Everything is computed by the library behind the
 command line; ``to_dict()`` has the keys of its ``--json``.
 """
 
+from ._errors import (
+    AddressError,
+    DataError,
+    FileError,
+    HandstandError,
+    UsageError,
+)
 from ._native import (
     Comparison,
-    DataError,
     Diagnosis,
+    Draft,
     Gains,
-    HandstandError,
+    LogCheck,
     Model,
     Motion,
+    Proposal,
     Refit,
-    UsageError,
+    __version__,
     add,
     compare,
     diagnose,
+    drift,
+    effects,
     fit,
     gains,
+    init,
+    log_check,
+    next,  # noqa: A004, as the command is called
     read_log,
     simulate,
 )
+from ._values import FittedValue
 
 __all__ = [
+    "AddressError",
     "Comparison",
     "DataError",
     "Diagnosis",
+    "Draft",
+    "FileError",
+    "FittedValue",
     "Gains",
     "HandstandError",
+    "LogCheck",
     "Model",
     "Motion",
+    "Proposal",
     "Refit",
     "UsageError",
+    "__version__",
     "add",
     "compare",
     "diagnose",
+    "drift",
+    "effects",
     "fit",
     "gains",
+    "init",
+    "log_check",
+    "next",
     "read_log",
     "simulate",
 ]

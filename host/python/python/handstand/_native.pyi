@@ -1,42 +1,68 @@
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from os import PathLike
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, ClassVar, Literal, Protocol, TypeAlias, final, type_check_only
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._values import FittedValue
+
 __all__ = [
     "Comparison",
-    "DataError",
     "Diagnosis",
+    "Draft",
     "Gains",
-    "HandstandError",
+    "LogCheck",
     "Model",
     "Motion",
+    "Proposal",
     "Refit",
-    "UsageError",
+    "__version__",
     "add",
     "compare",
     "diagnose",
+    "drift",
+    "effects",
     "fit",
     "gains",
+    "init",
+    "log_check",
+    "next",
     "read_log",
     "simulate",
 ]
 
+__version__: str
+
+@type_check_only
+class _Frame(Protocol):
+    """A table as pandas has it."""
+
+    @property
+    def columns(self) -> Any: ...
+    @property
+    def index(self) -> Any: ...
+    def to_csv(self, path_or_buf: Any = ..., /, *, index: bool = ...) -> Any: ...
+
 _Row: TypeAlias = NDArray[np.float64]
 _File: TypeAlias = str | PathLike[str]
-_Logs: TypeAlias = _File | Motion | Sequence[_File | Motion]
+_Log: TypeAlias = _File | Motion | _Frame
+_Logs: TypeAlias = _Log | Sequence[_Log]
 _Horizon: TypeAlias = float | Literal["whole"]
 _Progress: TypeAlias = Callable[[str, int, int], object]
 _PerJoint: TypeAlias = ArrayLike | Sequence[ArrayLike | None]
 
-class HandstandError(Exception): ...
-class UsageError(ValueError): ...
-class DataError(ValueError): ...
-
 @final
 class Model:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+    def __new__(cls, toml: str, name: str = "model.toml") -> Model: ...
+    @property
+    def values(self) -> dict[str, float]: ...
+    def __getitem__(self, address: str, /) -> float: ...
+    def __setitem__(self, address: str, value: float, /) -> None: ...
+    def __contains__(self, address: str, /) -> bool: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __eq__(self, other: object, /) -> bool: ...
     @staticmethod
     def load(path: _File) -> Model: ...
     @staticmethod
@@ -57,6 +83,7 @@ class Model:
 
 @final
 class Motion:
+    __hash__: ClassVar[None]  # type: ignore[assignment]
     def __new__(
         cls,
         time_s: ArrayLike,
@@ -87,6 +114,11 @@ class Motion:
     def supply_v(self) -> _Row | None: ...
     @property
     def payload_kg(self) -> float: ...
+    @property
+    def torque_on(self) -> list[bool] | None: ...
+    @property
+    def turned(self) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
     def __len__(self) -> int: ...
 
 @final
@@ -95,6 +127,12 @@ class Comparison:
     def rms(self) -> list[float]: ...
     @property
     def floor(self) -> list[float]: ...
+    @property
+    def motions(self) -> list[Motion]: ...
+    @property
+    def predictions(self) -> list[_Row]: ...
+    @property
+    def residuals(self) -> list[_Row]: ...
     def to_dict(self) -> dict[str, Any]: ...
     def html(self) -> str: ...
     def _repr_html_(self) -> str: ...
@@ -118,7 +156,7 @@ class Refit:
     @property
     def model(self) -> Model: ...
     @property
-    def values(self) -> dict[str, tuple[float, float, float]]: ...
+    def values(self) -> dict[str, FittedValue]: ...
     @property
     def error_before_rad(self) -> float: ...
     @property
@@ -151,13 +189,79 @@ class Gains:
     def to_dict(self) -> dict[str, Any]: ...
     def _repr_html_(self) -> str: ...
 
-def read_log(path: _File, model: Model) -> list[Motion]: ...
+@final
+class Draft:
+    @property
+    def model(self) -> Model: ...
+    @property
+    def guesses(self) -> list[dict[str, str]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+@final
+class LogCheck:
+    @property
+    def verdict(self) -> str: ...
+    @property
+    def findings(self) -> list[dict[str, Any]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+@final
+class Proposal:
+    @property
+    def helps(self) -> bool: ...
+    @property
+    def instructions(self) -> list[str]: ...
+    @property
+    def motion(self) -> Motion | None: ...
+    @property
+    def summary(self) -> list[str]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+def init(
+    log: _File | _Frame,
+    *,
+    name: str | None = None,
+    drive: str | None = None,
+    angle_zero: str | None = None,
+    angles: str | None = None,
+    length_m: Sequence[float] | None = None,
+    mass_kg: Sequence[float] | None = None,
+) -> Draft: ...
+def log_check(model: Model, logs: _Logs) -> LogCheck: ...
+def drift(
+    model: Model,
+    logs: Sequence[_Logs],
+    *,
+    free: str | Sequence[str] | None = None,
+    horizon_s: _Horizon | None = None,
+) -> dict[str, Any]: ...
+def effects(name: str | None = None) -> Any: ...
+def next(
+    model: Model,
+    logs: _Logs,
+    *,
+    holdout: _Logs | None = None,
+    value: str | Sequence[str] | None = None,
+    criterion: str = "d",
+    angles_rad: tuple[float, float] | Sequence[tuple[float, float]] | None = None,
+    speed_rad_s: float | None = None,
+    torque_nm: float | None = None,
+    seconds: float = 20.0,
+    mass_kg: float | None = None,
+    without: Sequence[str] = ...,
+    known: Sequence[str] = ...,
+    trust_log: bool = False,
+    seed: int = 1,
+    horizon_s: _Horizon | None = None,
+    progress: _Progress | None = None,
+) -> Proposal: ...
+def read_log(path: _File | _Frame, model: Model) -> list[Motion]: ...
 def compare(model: Model, logs: _Logs, *, horizon_s: _Horizon | None = None) -> Comparison: ...
 def diagnose(
     model: Model,
     logs: _Logs,
     *,
-    hold_out: _Logs | None = None,
+    holdout: _Logs | None = None,
     without: Sequence[str] = ...,
     known: Sequence[str] = ...,
     seed: int | None = None,
@@ -172,7 +276,7 @@ def add(
     effects: str | Sequence[str],
     logs: _Logs,
     *,
-    hold_out: _Logs | None = None,
+    holdout: _Logs | None = None,
     horizon_s: _Horizon | None = None,
     progress: _Progress | None = None,
 ) -> Refit: ...
@@ -181,7 +285,7 @@ def fit(
     logs: _Logs,
     *,
     free: str | Sequence[str] | None = None,
-    hold_out: _Logs | None = None,
+    holdout: _Logs | None = None,
     horizon_s: _Horizon | None = None,
     progress: _Progress | None = None,
 ) -> Refit: ...

@@ -1,12 +1,14 @@
 //! The plane in which a chain moves.
 
 use super::tree::{JointMotion, RobotTree};
-use crate::error::{Error, Result};
 use nalgebra::{Isometry3, Vector3};
 use std::f64::consts::{PI, TAU};
 
-/// Axes further apart than this are not parallel, rad; files round to six digits.
-pub(super) const PARALLEL_RAD: f64 = 1e-5;
+/// Axes further apart than this are not parallel, rad. Files round their angles, to 1.571 or to
+/// 1.57, and joints in a row add that up.
+pub(super) const PARALLEL_RAD: f64 = 3e-3;
+/// Less than this is the rounding of computing, rad.
+const TOLD_RAD: f64 = 1e-9;
 /// Gravity less than this is none, m/s^2.
 const NO_GRAVITY_M_S2: f64 = 1e-6;
 
@@ -40,69 +42,94 @@ pub(super) struct Frame {
     pub gravity_m_s2: f64,
 }
 
+/// An angle for people, in degrees and rad.
+fn in_words(angle_rad: f64) -> String {
+    let degrees = angle_rad.to_degrees();
+    match degrees < 1.0 {
+        true => format!("{degrees:.2e} degrees ({angle_rad:.2e} rad)"),
+        false => format!("{degrees:.1} degrees"),
+    }
+}
+
+/// Why joints make no planar chain.
+pub(super) struct NotPlanar(pub String);
+
 impl Frame {
-    /// The plane across the axes of the chosen bodies' joints.
-    ///
-    /// # Errors
-    /// Axes that are not parallel.
+    /// The plane across the axes of the chosen bodies' joints, and how far they are off it, in
+    /// words, where they are. The gravity is in the world.
     pub fn of(
         tree: &RobotTree,
         chosen: &[usize],
         poses: &[Isometry3<f64>],
-        file: &str,
-    ) -> Result<Self> {
-        let axis_of = |body: usize| poses[body] * tree.bodies[body].joints[0].axis;
-        let slides = |body: usize| tree.bodies[body].joints[0].motion == JointMotion::Slide;
-        let hinge = chosen.iter().copied().find(|&body| !slides(body));
-        let name = |body: usize| &tree.bodies[body].joints[0].name;
-        let Some(first) = hinge else {
-            let along: Vec<Vector3<f64>> = chosen.iter().map(|&body| axis_of(body)).collect();
-            let axis = across(&along, &tree.gravity_m_s2);
-            return match along
-                .iter()
-                .all(|along| along.dot(&axis).abs() < PARALLEL_RAD)
-            {
-                true => Ok(Frame::about(axis, tree)),
-                false => Err(Error::usage(
-                    format!("{file}: the slides named lie in no plane"),
-                    "a chain here is planar: choose slides in one plane by --joints",
-                )),
-            };
+        gravity_m_s2: &Vector3<f64>,
+    ) -> Result<(Self, Option<String>), NotPlanar> {
+        let joint = |body: usize| &tree.bodies[body].joints[0];
+        let axis_of = |body: usize| poses[body] * joint(body).axis;
+        let slides = |body: usize| joint(body).motion == JointMotion::Slide;
+        let Some(first) = chosen.iter().copied().find(|&body| !slides(body)) else {
+            return Frame::of_slides(chosen, &axis_of, gravity_m_s2);
         };
         let axis = axis_of(first);
+        let (mut most_rad, mut farthest) = (TOLD_RAD, None);
         for &body in chosen {
-            if slides(body) {
-                if axis_of(body).dot(&axis).abs() > PARALLEL_RAD {
-                    return Err(Error::usage(
-                        format!(
-                            "{file}: joint {} slides out of the plane in which {} turns",
-                            name(body),
-                            name(first)
-                        ),
-                        "a chain here is planar: choose other joints by --joints",
-                    ));
-                }
-                continue;
+            let off_rad = match slides(body) {
+                true => axis_of(body).dot(&axis).abs().min(1.0).asin(),
+                false => axis_of(body).cross(&axis).norm().min(1.0).asin(),
+            };
+            let (own, other) = (&joint(body).name, &joint(first).name);
+            if off_rad > PARALLEL_RAD {
+                let off = in_words(off_rad);
+                return Err(NotPlanar(match slides(body) {
+                    true => {
+                        format!("joint {own} slides {off} out of the plane in which {other} turns")
+                    }
+                    false => format!("joints {other} and {own} turn about axes {off} apart"),
+                }));
             }
-            let apart = axis_of(body).cross(&axis).norm().min(1.0).asin();
-            if apart > PARALLEL_RAD {
-                return Err(Error::usage(
-                    format!(
-                        "{file}: joints {} and {} turn about axes {:.1} degrees apart",
-                        name(first),
-                        name(body),
-                        apart.to_degrees()
+            if off_rad > most_rad {
+                let off = in_words(off_rad);
+                most_rad = off_rad;
+                farthest = Some(match slides(body) {
+                    true => format!(
+                        "joint {own} slides {off} out of the plane in which {other} turns; it is \
+                         taken as within"
                     ),
-                    "a chain here is planar: choose joints with parallel axes by --joints",
-                ));
+                    false => format!(
+                        "joints {other} and {own} turn about axes {off} apart, which are taken as \
+                         parallel"
+                    ),
+                });
             }
         }
-        Ok(Frame::about(axis, tree))
+        Ok((Frame::about(axis, gravity_m_s2), farthest))
+    }
+
+    /// The plane of joints that only slide.
+    fn of_slides(
+        chosen: &[usize],
+        axis_of: &dyn Fn(usize) -> Vector3<f64>,
+        gravity_m_s2: &Vector3<f64>,
+    ) -> Result<(Self, Option<String>), NotPlanar> {
+        let along: Vec<Vector3<f64>> = chosen.iter().map(|&body| axis_of(body)).collect();
+        let axis = across(&along, gravity_m_s2);
+        let off = along.iter().map(|along| along.dot(&axis).abs());
+        let most_rad = off.fold(0.0, f64::max).min(1.0).asin();
+        let off = in_words(most_rad);
+        match most_rad {
+            most if most > PARALLEL_RAD => Err(NotPlanar(format!(
+                "the slides named lie in no plane: they are up to {off} off one"
+            ))),
+            most => {
+                let told = (most > TOLD_RAD)
+                    .then(|| format!("the slides are up to {off} off a plane, taken as within"));
+                Ok((Frame::about(axis, gravity_m_s2), told))
+            }
+        }
     }
 
     /// The plane across an axis.
-    fn about(axis: Vector3<f64>, tree: &RobotTree) -> Self {
-        let within = tree.gravity_m_s2 - axis * axis.dot(&tree.gravity_m_s2);
+    fn about(axis: Vector3<f64>, gravity_m_s2: &Vector3<f64>) -> Self {
+        let within = gravity_m_s2 - axis * axis.dot(gravity_m_s2);
         let gravity_m_s2 = within.norm();
         let up = match gravity_m_s2 > NO_GRAVITY_M_S2 {
             true => -within / gravity_m_s2,

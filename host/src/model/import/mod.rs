@@ -3,7 +3,10 @@
 //! A robot in space becomes the planar chain of some of its joints: [`import`]. What a model does
 //! not have is listed with the reason, never left out silently.
 
+mod choice;
 mod frame;
+mod groups;
+mod inertia;
 mod mjcf;
 mod planar;
 #[cfg(test)]
@@ -13,7 +16,7 @@ mod urdf;
 mod write;
 mod xml;
 
-pub use tree::LeftOut;
+pub use tree::Remark;
 
 use crate::error::{Error, Result};
 use planar::planar_chain;
@@ -43,13 +46,16 @@ pub struct Imported {
     /// The joints, from the base to the tip.
     pub joints: Vec<String>,
     /// What of the file the model does not hold.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<Remark>,
+    /// What the model holds, and what is to be known of it: rounded axes, impossible moments.
+    pub notes: Vec<Remark>,
 }
 
 /// The model of a URDF or MJCF text; `path` only names it.
 ///
 /// Forward dynamics are those of the file for motions of the chosen joints: masses, moments of
-/// inertia, armature, damping, springs. Other joints are held where the file describes them.
+/// inertia, armature, damping, springs. Other joints are held where the file describes them. What
+/// changes forces and is not carried is listed; what is not carried refuses nothing.
 ///
 /// # Errors
 /// Broken XML and what the formats' readers refuse, with line and column; joints that make no
@@ -76,19 +82,21 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
     if plan.driven {
         for joint in tree.bodies.iter_mut().flat_map(|body| &mut body.joints) {
             if joint.drive == TreeDrive::None {
-                joint.drive = TreeDrive::Torque(None);
+                joint.drive = TreeDrive::Torque(joint.most_nm);
+                joint.limited_by = ("actuatorfrcrange", joint.line);
             }
         }
     }
-    let chain = planar_chain(&tree, &plan.joints, &name)?;
+    let mut chain = planar_chain(&tree, &plan.joints, &name)?;
     let mut left_out = tree.left_out.clone();
     left_out.extend(chain.left_out.iter().cloned());
-    let toml = write::toml(&tree.name, &chain, format, &mut left_out)?;
+    let toml = write::toml(&tree.name, &mut chain, format, path, &mut left_out)?;
     let joints = chain.links.into_iter().map(|link| link.joint.name);
     Ok(Imported {
         format,
         toml,
         joints: joints.collect(),
         left_out,
+        notes: chain.notes,
     })
 }

@@ -1,10 +1,12 @@
 //! A planar chain out of a robot in space: the joints chosen, the rest held, all seen along the
 //! joints' common axis.
 
-use super::frame::{Frame, PARALLEL_RAD, wrapped};
-use super::tree::{Inertial, JointMotion, LeftOut, RobotTree, TreeJoint};
+use super::choice::{ancestors, longest, named};
+use super::frame::{Frame, NotPlanar, wrapped};
+use super::groups::ready_to_paste;
+use super::tree::{Fault, FaultyPart, Inertial, JointMotion, Remark, RobotTree, TreeJoint};
 use crate::dynamics::SlideAxis;
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use nalgebra::Isometry3;
 use std::f64::consts::{PI, TAU};
 
@@ -15,6 +17,8 @@ const NO_LENGTH_M: f64 = 1e-12;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlanarLink {
     pub joint: TreeJoint,
+    /// Name and line of the body in the file.
+    pub body: (String, usize),
     /// Whether the file's joint counts clockwise.
     pub reversed: bool,
     /// Relative angle here, the first from hanging, where the file's coordinate is 0, rad; of a
@@ -35,7 +39,8 @@ pub(super) struct PlanarLink {
 pub(super) struct PlanarChain {
     pub links: Vec<PlanarLink>,
     pub gravity_m_s2: f64,
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<Remark>,
+    pub notes: Vec<Remark>,
 }
 
 /// The chain of these joints, base to tip; without names that with most hinges.
@@ -49,14 +54,119 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
         [] => longest(tree, file, &mut left_out)?,
         names => named(tree, names, file)?,
     };
+    let mut chain = chain_of(tree, &chosen, file).map_err(|refusal| refusal.told(tree, file))?;
+    left_out.append(&mut chain.left_out);
+    Ok(PlanarChain { left_out, ..chain })
+}
+
+/// Why some joints make no chain.
+pub(super) enum Refusal {
+    /// What is wrong, and whether other joints may do.
+    Chain(Error),
+    /// Other joints may do.
+    Joints(Option<Place>, String, &'static str),
+}
+
+impl Refusal {
+    /// With the joints that would do.
+    fn told(self, tree: &RobotTree, file: &str) -> Error {
+        let (place, what, remedy) = match self {
+            Refusal::Chain(error) => return error,
+            Refusal::Joints(place, what, remedy) => (place, what, remedy),
+        };
+        let remedy = match ready_to_paste(tree, file) {
+            Some(groups) => format!("{remedy}: {groups}"),
+            None => format!("{remedy}; no joints of this robot do"),
+        };
+        match place {
+            Some(place) => Error::data(place, what, remedy),
+            None => Error::usage(format!("{file}: {what}"), remedy),
+        }
+    }
+}
+
+impl From<NotPlanar> for Refusal {
+    fn from(NotPlanar(what): NotPlanar) -> Self {
+        let remedy = "a chain here is planar; these joints turn about parallel axes";
+        Refusal::Joints(None, what, remedy)
+    }
+}
+
+/// The fault of the file that such a chain meets: in its joints, in what they move, or in how
+/// that which carries them is turned.
+fn fault<'a>(tree: &'a RobotTree, chosen: &[usize], owner: &[Option<usize>]) -> Option<&'a Fault> {
+    let carries = |body: usize| {
+        chosen
+            .first()
+            .is_some_and(|&first| ancestors(tree, first).contains(&body))
+    };
+    tree.faults.iter().find(|fault| match fault.part {
+        FaultyPart::Joint => chosen.contains(&fault.body),
+        FaultyPart::Mass => owner[fault.body].is_some(),
+        FaultyPart::Pose => owner[fault.body].is_some() || carries(fault.body),
+    })
+}
+
+/// The link of the chain to which each body is fixed; none for the base.
+fn owners(tree: &RobotTree, chosen: &[usize]) -> Vec<Option<usize>> {
+    let mut owners: Vec<Option<usize>> = Vec::with_capacity(tree.bodies.len());
+    for (index, body) in tree.bodies.iter().enumerate() {
+        let own = chosen.iter().position(|&link| link == index);
+        owners.push(own.or_else(|| body.parent.and_then(|parent| owners[parent])));
+    }
+    owners
+}
+
+/// The share of the moving bodies' weight that they feel; what bears one of them alone is told.
+fn felt(tree: &RobotTree, owner: &[Option<usize>], left_out: &mut Vec<Remark>) -> f64 {
+    let moving = tree.bodies.iter().zip(owner);
+    let moving = moving.filter(|(body, owner)| owner.is_some() && body.inertial.mass_kg > 0.0);
+    let moving: Vec<_> = moving.map(|(body, _)| body).collect();
+    let borne = moving.first().map_or(0.0, |body| body.borne);
+    if moving.iter().all(|body| body.borne == borne) {
+        return 1.0 - borne;
+    }
+    for body in moving.iter().filter(|body| body.borne != 0.0) {
+        let share = body.borne;
+        let why =
+            format!("{share} of its weight is borne, of others' is not: here all weigh in full");
+        left_out.push(Remark::new("gravcomp", Some(&body.name), why).on(body.line));
+    }
+    1.0
+}
+
+/// The chain of these bodies' joints, base to tip.
+pub(super) fn chain_of(
+    tree: &RobotTree,
+    chosen: &[usize],
+    file: &str,
+) -> Result<PlanarChain, Refusal> {
+    let mut left_out = Vec::new();
+    let owner = owners(tree, chosen);
+    if let Some(fault) = fault(tree, chosen, &owner) {
+        return Err(Refusal::Chain(fault.error()));
+    }
     let poses = tree.world_poses();
-    let frame = Frame::of(tree, &chosen, &poses, file)?;
-    held(tree, &chosen, &mut left_out);
-    let (base, masses) = masses(tree, &chosen, &poses);
+    let gravity_m_s2 = tree.gravity_m_s2 * felt(tree, &owner, &mut left_out);
+    let (frame, off) = Frame::of(tree, chosen, &poses, &gravity_m_s2)?;
+    let mut notes: Vec<Remark> = off
+        .map(|off| Remark::new("axes", None, off))
+        .into_iter()
+        .collect();
+    for (body, _) in tree
+        .bodies
+        .iter()
+        .zip(&owner)
+        .filter(|(_, owner)| owner.is_some())
+    {
+        notes.extend(body.notes.iter().cloned());
+    }
+    held(tree, chosen, &mut left_out);
+    let (base, masses) = masses(tree, chosen, &owner, &poses);
     if base.mass_kg > 0.0 {
         let still = base.mass_kg;
         let why = format!("{still} kg stand before the first joint, which does not move");
-        left_out.push(LeftOut::new("base", None, why));
+        left_out.push(Remark::new("base", None, why));
     }
     let mut links: Vec<PlanarLink> = Vec::new();
     let mut direction_rad = 0.0;
@@ -67,7 +177,8 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
             .get(index + 1)
             .map(|&next| poses[next] * tree.bodies[next].joints[0].anchor_m);
         let mass = &masses[index];
-        with_mass(mass, joint, file)?;
+        let inertia_kg_m2 = frame.axis.dot(&(mass.inertia_kg_m2 * frame.axis));
+        with_mass(tree, body, mass, inertia_kg_m2, file)?;
         let com = frame.seen(&(mass.com_m - anchor));
         let along = next.map_or(com, |next| frame.seen(&(next - anchor)));
         let before_rad = direction_rad;
@@ -94,6 +205,7 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
         }
         links.push(PlanarLink {
             joint: joint.clone(),
+            body: (tree.bodies[body].name.clone(), tree.bodies[body].line),
             reversed,
             offset_rad: offset,
             slide,
@@ -101,13 +213,14 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
             com_m,
             com_angle_rad,
             mass_kg: mass.mass_kg,
-            inertia_kg_m2: frame.axis.dot(&(mass.inertia_kg_m2 * frame.axis)),
+            inertia_kg_m2: inertia_kg_m2.max(0.0),
         });
     }
     Ok(PlanarChain {
         links,
         gravity_m_s2: frame.gravity_m_s2,
         left_out,
+        notes,
     })
 }
 
@@ -125,134 +238,46 @@ fn off_line(com: (f64, f64), direction_rad: f64) -> (f64, f64) {
     }
 }
 
-/// Refuses a link that would turn without inertia.
-fn with_mass(mass: &Inertial, joint: &TreeJoint, file: &str) -> Result<()> {
-    match mass.mass_kg > 0.0 {
-        true => Ok(()),
-        false => Err(Error::usage(
-            format!("{file}: nothing behind joint {} has a mass", joint.name),
-            "give its link an <inertial>, or choose other joints with --joints",
-        )),
-    }
-}
-
-/// Whether a body has one joint, which moves so.
-fn moves(tree: &RobotTree, body: usize, motion: JointMotion) -> bool {
-    matches!(tree.bodies[body].joints.as_slice(), [joint] if joint.motion == motion)
-}
-
-/// Whether a body has one hinge.
-fn hinged(tree: &RobotTree, body: usize) -> bool {
-    moves(tree, body, JointMotion::Hinge)
-}
-
-fn longest(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<Vec<usize>> {
-    let mut hinges = vec![0usize; tree.bodies.len()];
-    for (body, own) in tree.bodies.iter().enumerate() {
-        let before = own.parent.map_or(0, |parent| hinges[parent]);
-        hinges[body] = before + usize::from(hinged(tree, body));
-    }
-    let most = hinges.iter().copied().max().unwrap_or(0);
-    if most == 0 {
-        return sliding(tree, file, left_out);
-    }
-    let tips: Vec<usize> = (0..hinges.len())
-        .filter(|&b| hinges[b] == most && hinged(tree, b))
-        .collect();
-    let Some(&tip) = tips.first().filter(|_| most > 0) else {
-        return Err(Error::usage(
-            format!("{file}: no joint turns about one axis"),
-            "a chain needs hinges: revolute or continuous joints, <joint type=\"hinge\">",
+/// Refuses a link that would move without mass, or whose moment about the axis is below zero.
+fn with_mass(
+    tree: &RobotTree,
+    body: usize,
+    mass: &Inertial,
+    inertia_kg_m2: f64,
+    file: &str,
+) -> Result<(), Refusal> {
+    let (own, joint) = (&tree.bodies[body], &tree.bodies[body].joints[0].name);
+    let name = &own.name;
+    let place = || Place {
+        line: Some(own.line),
+        ..Place::file(file)
+    };
+    if mass.mass_kg <= 0.0 {
+        return Err(Refusal::Joints(
+            Some(place()),
+            format!(
+                "the link {name}, which joint {joint} moves, has no mass, nor has anything that is \
+                 fixed to it"
+            ),
+            "give it an <inertial>, or leave its joint out: it is held then, and the link is one \
+             with that before; these joints move masses",
         ));
-    };
-    if tips.len() > 1 {
-        let name = &tree.bodies[tip].joints[0].name;
-        let why = format!(
-            "{} branches have {most} joints; the one that ends at {name} is taken, --joints names \
-             another",
-            tips.len()
-        );
-        left_out.push(LeftOut::new("branches", None, why));
     }
-    let poses = tree.world_poses();
-    let axis = |body: usize| poses[body] * tree.bodies[body].joints[0].axis;
-    let hinge = axis(tip);
-    // A slide across the plane of the hinges is held.
-    let in_plane = |body: usize| {
-        moves(tree, body, JointMotion::Slide) && axis(body).dot(&hinge).abs() < PARALLEL_RAD
-    };
-    let chain = ancestors(tree, tip)
-        .into_iter()
-        .filter(|&body| hinged(tree, body) || in_plane(body));
-    Ok(chain.collect())
-}
-
-/// The chain of a robot without hinges: its first slide.
-fn sliding(tree: &RobotTree, file: &str, left_out: &mut Vec<LeftOut>) -> Result<Vec<usize>> {
-    let mut slides = (0..tree.bodies.len()).filter(|&body| moves(tree, body, JointMotion::Slide));
-    let Some(first) = slides.next() else {
-        return Err(Error::usage(
-            format!("{file}: no joint turns about one axis or slides along one"),
-            "a chain needs hinges or slides: revolute, continuous or prismatic joints, \
-             <joint type=\"hinge\">",
-        ));
-    };
-    if slides.next().is_some() {
-        let name = &tree.bodies[first].joints[0].name;
-        let why = format!("nothing turns; {name} alone is taken, --joints names others");
-        left_out.push(LeftOut::new("slides", None, why));
+    if inertia_kg_m2 < -1e-9 * mass.mass_kg {
+        return Err(Refusal::Chain(Error::data(
+            place(),
+            format!(
+                "the link {name}, with what is fixed to it, has a moment of inertia of \
+                 {inertia_kg_m2:.3e} kg m^2 about the axis of {joint}"
+            ),
+            "mend the products of inertia: no body has a moment below 0",
+        )));
     }
-    Ok(vec![first])
-}
-
-/// A body and those that carry it, the base first.
-fn ancestors(tree: &RobotTree, body: usize) -> Vec<usize> {
-    let mut chain: Vec<usize> =
-        std::iter::successors(Some(body), |&body| tree.bodies[body].parent).collect();
-    chain.reverse();
-    chain
-}
-
-fn named(tree: &RobotTree, names: &[String], file: &str) -> Result<Vec<usize>> {
-    let mut chosen: Vec<usize> = Vec::new();
-    for name in names {
-        let has = |body: &usize| {
-            tree.bodies[*body]
-                .joints
-                .iter()
-                .any(|joint| joint.name == *name)
-        };
-        let Some(body) = (0..tree.bodies.len()).find(has) else {
-            let all = tree.bodies.iter().flat_map(|body| &body.joints);
-            let all: Vec<&str> = all.map(|joint| joint.name.as_str()).collect();
-            let what = format!("{file}: there is no joint \"{name}\"");
-            return Err(Error::usage(
-                what,
-                format!("its joints: {}", all.join(", ")),
-            ));
-        };
-        if !hinged(tree, body) && !moves(tree, body, JointMotion::Slide) {
-            return Err(Error::usage(
-                format!("{file}: joint {name} neither turns nor slides alone in its own body"),
-                "name hinges and slides, one for each body",
-            ));
-        }
-        if chosen
-            .last()
-            .is_some_and(|before| *before == body || !ancestors(tree, body).contains(before))
-        {
-            return Err(Error::usage(
-                format!("{file}: joint {name} does not lie behind the one named before it"),
-                "name the joints from the base to the tip",
-            ));
-        }
-        chosen.push(body);
-    }
-    Ok(chosen)
+    Ok(())
 }
 
 /// Says which joints do not move.
-fn held(tree: &RobotTree, chosen: &[usize], left_out: &mut Vec<LeftOut>) {
+fn held(tree: &RobotTree, chosen: &[usize], left_out: &mut Vec<Remark>) {
     for (index, body) in tree
         .bodies
         .iter()
@@ -267,7 +292,9 @@ fn held(tree: &RobotTree, chosen: &[usize], left_out: &mut Vec<LeftOut>) {
             false => "held where the file has it: the base of the chain stands still",
         };
         let joints = body.joints.iter();
-        left_out.extend(joints.map(|joint| LeftOut::new("joint", Some(&joint.name), why)));
+        left_out.extend(
+            joints.map(|joint| Remark::new("joint", Some(&joint.name), why).on(joint.line)),
+        );
     }
 }
 
@@ -275,17 +302,14 @@ fn held(tree: &RobotTree, chosen: &[usize], left_out: &mut Vec<LeftOut>) {
 fn masses(
     tree: &RobotTree,
     chosen: &[usize],
+    owner: &[Option<usize>],
     poses: &[Isometry3<f64>],
 ) -> (Inertial, Vec<Inertial>) {
     let mut base = Inertial::NONE;
     let mut links = vec![Inertial::NONE; chosen.len()];
-    let mut owner: Vec<Option<usize>> = Vec::with_capacity(tree.bodies.len());
     for (index, body) in tree.bodies.iter().enumerate() {
-        let own = chosen.iter().position(|&link| link == index);
-        let own = own.or_else(|| body.parent.and_then(|parent| owner[parent]));
-        owner.push(own);
         let part = body.inertial.seen_from(&poses[index]);
-        match own {
+        match owner[index] {
             Some(link) => links[link] = links[link].with(&part),
             None => base = base.with(&part),
         }

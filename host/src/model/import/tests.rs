@@ -1,5 +1,7 @@
 //! Chains out of URDF and MJCF texts.
 
+mod real_files;
+
 use super::*;
 use crate::Model;
 use crate::model::export::{mjcf as to_mjcf, urdf as to_urdf};
@@ -191,8 +193,12 @@ fn what_makes_no_planar_chain_is_refused_with_its_place() {
         ("", "robot.xml:1"),
         ("<robot", "robot.xml:1"),
         ("<sdf/>", "<sdf>"),
-        ("<robot/>", "0 links"),
+        ("<robot/>", "no <link>"),
         ("<robot><link name='a'/></robot>", "no joint turns"),
+        (
+            "<mujoco><worldbody><body><joint name='x'/><joint name='y'/></body></worldbody></mujoco>",
+            "no joint turns or slides alone in its own body",
+        ),
         ("<robot><link/></robot>", "lacks name"),
         ("<robot><link name='a'/><link name='b'/></robot>", "2 links"),
         (
@@ -201,7 +207,7 @@ fn what_makes_no_planar_chain_is_refused_with_its_place() {
         ),
         (
             "<robot><link name='a'/><link name='b'/><joint name='j' type='continuous'><parent link='a'/><child link='b'/></joint></robot>",
-            "has a mass",
+            "has no mass",
         ),
         ("<mujoco><include file='x'/></mujoco>", "<include>"),
         (
@@ -213,7 +219,7 @@ fn what_makes_no_planar_chain_is_refused_with_its_place() {
             "axis",
         ),
         (
-            "<mujoco><worldbody><body pos='1 x 2'/></worldbody></mujoco>",
+            "<mujoco><worldbody><body pos='1 x 2'><joint/></body></worldbody></mujoco>",
             "no number",
         ),
         (

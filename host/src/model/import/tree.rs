@@ -1,24 +1,96 @@
 //! A robot as other simulators describe it: rigid bodies in space, each carried by its parent.
 
+use crate::error::{Error, Place};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use std::fmt;
 
-/// Why a part of a file is not in the model.
+/// A part of a file that the model does not hold, or holds otherwise.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct LeftOut {
+pub struct Remark {
     /// The element, or the quantity: `range`, `mimic`, `tendon`.
     pub part: String,
     /// The joint or body, where it is of one.
     pub name: Option<String>,
+    /// Line of the robot's file, where it stands on one.
+    pub line: Option<usize>,
     /// Why, and what was taken instead.
     pub why: String,
 }
 
-impl LeftOut {
+impl Remark {
     pub(super) fn new(part: &str, name: Option<&str>, why: impl Into<String>) -> Self {
-        LeftOut {
+        Remark {
             part: part.to_string(),
             name: name.map(str::to_string),
+            line: None,
             why: why.into(),
+        }
+    }
+
+    /// The same with the line on which it stands.
+    pub(super) fn on(self, line: usize) -> Self {
+        Remark {
+            line: Some(line),
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.part)?;
+        if let Some(name) = &self.name {
+            write!(f, " of {name}")?;
+        }
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
+        write!(f, ": {}", self.why)
+    }
+}
+
+/// What is wrong with a part of the file: it refuses the robot only where the chain needs it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Fault {
+    /// Index of the body.
+    pub body: usize,
+    pub part: FaultyPart,
+    place: Option<Place>,
+    what: String,
+    remedy: String,
+}
+
+/// Of what a fault is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FaultyPart {
+    /// Where a body stands on its parent.
+    Pose,
+    /// What it weighs.
+    Mass,
+    /// One of its joints.
+    Joint,
+}
+
+impl Fault {
+    pub fn new(body: usize, part: FaultyPart, error: &Error) -> Self {
+        let (place, what) = match error {
+            Error::Data { place, reason } => (Some(place.clone()), reason.to_string()),
+            other => (None, other.to_string()),
+        };
+        let remedy = error.remedy().unwrap_or_default().into_owned();
+        Fault {
+            body,
+            part,
+            place,
+            what,
+            remedy,
+        }
+    }
+
+    pub fn error(&self) -> Error {
+        match &self.place {
+            Some(place) => Error::data(place.clone(), &self.what, &self.remedy),
+            None => Error::usage(&self.what, &self.remedy),
         }
     }
 }
@@ -95,8 +167,12 @@ pub(super) enum TreeDrive {
     None,
     /// A torque, N m, at most so large.
     Torque(Option<f64>),
-    /// A share of full voltage.
-    Duty { stall_nm: f64, damping_nm_s: f64 },
+    /// A share of full voltage, the torque at most `limit_nm`.
+    Duty {
+        stall_nm: f64,
+        damping_nm_s: f64,
+        limit_nm: Option<f64>,
+    },
     /// torque = stiffness (goal - angle) - damping w, at most `limit_nm`.
     Position {
         stiffness_nm: f64,
@@ -111,6 +187,8 @@ pub(super) enum TreeDrive {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TreeJoint {
     pub name: String,
+    /// Line of its element.
+    pub line: usize,
     pub motion: JointMotion,
     /// In the body's frame, of length 1.
     pub axis: Vector3<f64>,
@@ -118,35 +196,45 @@ pub(super) struct TreeJoint {
     pub anchor_m: Point3<f64>,
     /// Coordinate in the pose that the file describes, rad.
     pub reference_rad: f64,
-    /// Lowest and highest coordinate, rad.
-    pub range_rad: Option<(f64, f64)>,
-    /// Highest speed, rad/s.
-    pub speed_rad_s: Option<f64>,
     pub damping_nm_s: f64,
     pub friction_nm: f64,
     pub armature_kg_m2: f64,
     pub stiffness_nm: f64,
     pub spring_rest_rad: f64,
     pub drive: TreeDrive,
+    /// Largest torque of all that drives the joint, N m.
+    pub most_nm: Option<f64>,
+    /// The attribute that limits the drive, and its line.
+    pub limited_by: (&'static str, usize),
+    /// What of it the model does not hold.
+    pub left_out: Vec<Remark>,
 }
 
 impl TreeJoint {
-    pub fn new(name: String, motion: JointMotion, axis: Vector3<f64>) -> Self {
+    pub fn new(name: String, line: usize, motion: JointMotion, axis: Vector3<f64>) -> Self {
         TreeJoint {
             name,
+            line,
             motion,
             axis,
             anchor_m: Point3::origin(),
             reference_rad: 0.0,
-            range_rad: None,
-            speed_rad_s: None,
             damping_nm_s: 0.0,
             friction_nm: 0.0,
             armature_kg_m2: 0.0,
             stiffness_nm: 0.0,
             spring_rest_rad: 0.0,
             drive: TreeDrive::None,
+            most_nm: None,
+            limited_by: ("", line),
+            left_out: Vec::new(),
         }
+    }
+
+    /// Says that a part of it is not in the model.
+    pub fn leave(&mut self, part: &str, line: usize, why: impl Into<String>) {
+        let remark = Remark::new(part, Some(&self.name), why).on(line);
+        self.left_out.push(remark);
     }
 }
 
@@ -154,6 +242,8 @@ impl TreeJoint {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TreeBody {
     pub name: String,
+    /// Line of its element.
+    pub line: usize,
     /// Index of the body that carries it, always a smaller one; none for the world.
     pub parent: Option<usize>,
     /// In the parent's frame, with every joint at its reference.
@@ -161,6 +251,10 @@ pub(super) struct TreeBody {
     pub inertial: Inertial,
     /// None where it is fixed to its parent.
     pub joints: Vec<TreeJoint>,
+    /// Share of its weight that something bears: MuJoCo's `gravcomp`.
+    pub borne: f64,
+    /// What is told of it though it is in the model.
+    pub notes: Vec<Remark>,
 }
 
 /// A robot, and what its file says beyond bodies and joints.
@@ -170,7 +264,8 @@ pub(super) struct RobotTree {
     /// Parents before children; the first is the world, or what stands in it.
     pub bodies: Vec<TreeBody>,
     pub gravity_m_s2: Vector3<f64>,
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<Remark>,
+    pub faults: Vec<Fault>,
 }
 
 impl RobotTree {

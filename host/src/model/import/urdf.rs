@@ -1,13 +1,33 @@
 //! URDF: links and joints by name, poses as `xyz` and `rpy`.
 
-use super::tree::{Inertial, JointMotion, LeftOut, RobotTree, TreeBody, TreeDrive, TreeJoint};
+use super::inertia::checked;
+use super::tree::{
+    Fault, FaultyPart, Inertial, JointMotion, Remark, RobotTree, TreeBody, TreeDrive, TreeJoint,
+};
 use super::xml::Element;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
+use roxmltree::Node;
 use std::collections::HashMap;
 
 /// URDF says nothing of gravity.
 const GRAVITY_M_S2: f64 = 9.81;
+/// What makes a URDF of a file with macros.
+pub(super) const EXPAND: &str = "expand it first: xacro robot.urdf.xacro > robot.urdf";
+/// In the address of every namespace of xacro.
+const XACRO: &str = "xacro";
+/// Elements of a joint that are read, or say nothing of forces.
+const OF_JOINT: [&str; 9] = [
+    "parent",
+    "child",
+    "origin",
+    "axis",
+    "dynamics",
+    "limit",
+    "mimic",
+    "safety_controller",
+    "calibration",
+];
 
 /// The robot of a `<robot>` element.
 ///
@@ -15,16 +35,14 @@ const GRAVITY_M_S2: f64 = 9.81;
 /// Names that are not there or stand twice, links in a ring, no single root, numbers that are none.
 pub(super) fn tree(robot: Element) -> Result<RobotTree> {
     let mut left_out = Vec::new();
-    if let Some(macros) = robot
-        .elements()
-        .find(|e| e.node.tag_name().namespace().is_some())
-    {
-        return Err(macros.wrong(
-            "this file still holds xacro macros",
-            "expand it first: xacro robot.urdf.xacro > robot.urdf",
+    no_macros(robot)?;
+    let links: Vec<Element> = robot.all("link").collect();
+    if links.is_empty() {
+        return Err(robot.wrong(
+            "the robot has no <link>",
+            "give the file of the whole robot",
         ));
     }
-    let links: Vec<Element> = robot.all("link").collect();
     let mut index_of = HashMap::new();
     for (index, link) in links.iter().enumerate() {
         if index_of.insert(link.required("name")?, index).is_some() {
@@ -37,7 +55,12 @@ pub(super) fn tree(robot: Element) -> Result<RobotTree> {
         .filter(|e| !["link", "joint", "material"].contains(&e.tag()))
     {
         let why = "no part of a chain of links";
-        left_out.push(LeftOut::new(skipped.tag(), skipped.text("name"), why));
+        left_out.push(Remark::new(skipped.tag(), skipped.text("name"), why).on(skipped.line()));
+    }
+    for vendors in robot.foreign() {
+        let why = "an element of a vendor's own";
+        let remark = Remark::new(vendors.tag(), vendors.text("name"), why);
+        left_out.push(remark.on(vendors.line()));
     }
     let order = order(robot, &carried)?;
     let place: HashMap<usize, usize> = order
@@ -45,19 +68,40 @@ pub(super) fn tree(robot: Element) -> Result<RobotTree> {
         .enumerate()
         .map(|(at, link)| (*link, at))
         .collect();
-    let mut bodies = Vec::new();
+    let (mut bodies, mut faults) = (Vec::new(), Vec::new());
     for link in order {
+        let index = bodies.len();
+        let mut fault = |part, error: &Error| faults.push(Fault::new(index, part, error));
         let mut body = TreeBody {
             name: links[link].required("name")?.to_string(),
+            line: links[link].line(),
             parent: None,
             pose: Isometry3::identity(),
-            inertial: inertial(links[link])?,
+            inertial: Inertial::NONE,
             joints: Vec::new(),
+            borne: 0.0,
+            notes: Vec::new(),
         };
+        match inertial(links[link]) {
+            Ok((inertial, impossible)) => {
+                body.inertial = inertial;
+                let note = |why| Remark::new("inertia", Some(&body.name), why).on(body.line);
+                body.notes.extend(impossible.map(note));
+            }
+            Err(error) => fault(FaultyPart::Mass, &error),
+        }
         if let Some((parent, joint)) = carried[link] {
             body.parent = place.get(&parent).copied();
-            body.pose = pose(joint.first("origin"))?;
-            body.joints.extend(tree_joint(joint, &mut left_out)?);
+            match pose(joint.first("origin")) {
+                Ok(pose) => body.pose = pose,
+                Err(error) => fault(FaultyPart::Pose, &error),
+            }
+            if let Some((mut made, kind)) = new_joint(joint, &mut left_out)? {
+                if let Err(error) = read_joint(joint, kind, &mut made) {
+                    fault(FaultyPart::Joint, &error);
+                }
+                body.joints.push(made);
+            }
         }
         bodies.push(body);
     }
@@ -66,7 +110,24 @@ pub(super) fn tree(robot: Element) -> Result<RobotTree> {
         bodies,
         gravity_m_s2: Vector3::new(0.0, 0.0, -GRAVITY_M_S2),
         left_out,
+        faults,
     })
+}
+
+/// Refuses a file that xacro has not expanded: an element of its namespace, wherever it is.
+fn no_macros(robot: Element) -> Result<()> {
+    let is_macro = |node: &Node| {
+        let namespace = node.tag_name().namespace();
+        namespace.is_some_and(|address| address.contains(XACRO))
+    };
+    match robot.node.descendants().find(is_macro) {
+        None => Ok(()),
+        Some(node) => {
+            let found = Element { node, ..robot };
+            let what = format!("<xacro:{}>: this file still holds macros", found.tag());
+            Err(found.wrong(what, EXPAND))
+        }
+    }
 }
 
 /// Of each link: the link and the joint that carry it.
@@ -138,9 +199,10 @@ fn pose(origin: Option<Element>) -> Result<Isometry3<f64>> {
     Ok(Isometry3::from_parts(Translation3::from(xyz), turn))
 }
 
-fn inertial(link: Element) -> Result<Inertial> {
+/// Mass and moments of a link, and what no body's can be.
+fn inertial(link: Element) -> Result<(Inertial, Option<String>)> {
     let Some(found) = link.first("inertial") else {
-        return Ok(Inertial::NONE);
+        return Ok((Inertial::NONE, None));
     };
     let lacks =
         |tag: &str| found.wrong(format!("<inertial> lacks <{tag}>"), format!("add <{tag}>"));
@@ -150,20 +212,24 @@ fn inertial(link: Element) -> Result<Inertial> {
     let of = |key: &str| -> Result<f64> { Ok(moments.number(key)?.unwrap_or(0.0)) };
     let (xy, xz, yz) = (of("ixy")?, of("ixz")?, of("iyz")?);
     let (xx, yy, zz) = (of("ixx")?, of("iyy")?, of("izz")?);
-    if mass_kg < 0.0 || xx < 0.0 || yy < 0.0 || zz < 0.0 {
-        return Err(found.wrong("a mass or a moment of inertia is below 0", "mend its sign"));
-    }
+    let written = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let (inertia_kg_m2, impossible) = checked(moments, mass_kg, written)?;
     let own = Inertial {
         mass_kg,
         com_m: Point3::origin(),
-        inertia_kg_m2: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+        inertia_kg_m2,
     };
-    Ok(own.seen_from(&pose(found.first("origin"))?))
+    let inertial = own.seen_from(&pose(found.first("origin"))?);
+    Ok((inertial, impossible))
 }
 
-fn tree_joint(joint: Element, left_out: &mut Vec<LeftOut>) -> Result<Option<TreeJoint>> {
-    let name = joint.required("name")?;
-    let motion = match joint.required("type")? {
+/// A joint by name and kind; none where it is fixed.
+fn new_joint<'a>(
+    joint: Element<'a>,
+    left_out: &mut Vec<Remark>,
+) -> Result<Option<(TreeJoint, &'a str)>> {
+    let (name, kind) = (joint.required("name")?, joint.required("type")?);
+    let motion = match kind {
         "fixed" => return Ok(None),
         "revolute" | "continuous" => JointMotion::Hinge,
         "prismatic" => JointMotion::Slide,
@@ -173,39 +239,60 @@ fn tree_joint(joint: Element, left_out: &mut Vec<LeftOut>) -> Result<Option<Tree
             return Err(joint.wrong(format!("a joint of type \"{other}\""), remedy));
         }
     };
-    let axis = joint
-        .first("axis")
-        .map(|axis| axis.vector("xyz"))
-        .transpose()?
-        .flatten();
-    let axis = axis.unwrap_or(Vector3::x());
-    if axis.norm() < 1e-9 {
+    if let Some(mimic) = joint.first("mimic") {
+        let why = "a joint here follows no other: it moves freely or is held";
+        left_out.push(Remark::new("mimic", Some(name), why).on(mimic.line()));
+    }
+    let made = TreeJoint::new(name.to_string(), joint.line(), motion, Vector3::x());
+    Ok(Some((made, kind)))
+}
+
+/// What a joint's elements say of it.
+fn read_joint(joint: Element, kind: &str, made: &mut TreeJoint) -> Result<()> {
+    let axis = joint.first("axis").map(|axis| axis.vector("xyz"));
+    let axis = axis.transpose()?.flatten().unwrap_or(Vector3::x());
+    if axis.norm() < 1e-9 && made.motion != JointMotion::Free {
         return Err(joint.wrong("an axis of length 0", "give the axis a direction"));
     }
-    let mut made = TreeJoint::new(name.to_string(), motion, axis.normalize());
+    made.axis = axis.try_normalize(1e-9).unwrap_or(Vector3::x());
     if let Some(dynamics) = joint.first("dynamics") {
         made.damping_nm_s = dynamics.number("damping")?.unwrap_or(0.0);
         made.friction_nm = dynamics.number("friction")?.unwrap_or(0.0);
+        let known = ["damping", "friction"];
+        for key in dynamics.others(&known) {
+            made.leave(key, dynamics.line(), "an attribute that is not read");
+        }
     }
     if let Some(limit) = joint.first("limit") {
-        let range = (limit.number("lower")?, limit.number("upper")?);
-        made.range_rad = ["revolute", "prismatic"]
-            .contains(&joint.required("type")?)
-            .then_some((range.0.unwrap_or(0.0), range.1.unwrap_or(0.0)));
-        made.speed_rad_s = limit.number("velocity")?.filter(|speed| *speed > 0.0);
-        let effort = limit.number("effort")?.filter(|effort| *effort > 0.0);
-        made.drive = effort.map_or(TreeDrive::None, |effort| TreeDrive::Torque(Some(effort)));
+        let has = |key: &str| limit.text(key).is_some();
+        if ["revolute", "prismatic"].contains(&kind) && (has("lower") || has("upper")) {
+            made.leave("range", limit.line(), "links here have no end stops");
+        }
+        // Not carried, so whatever stands there is no reason to refuse.
+        let velocity = limit
+            .text("velocity")
+            .map(|text| text.trim().parse::<f64>());
+        if velocity.is_some_and(|found| !found.is_ok_and(|speed| speed <= 0.0 || speed > 1e9)) {
+            let why = "no drive here stops at a speed of its own; see speed_limit";
+            made.leave("velocity limit", limit.line(), why);
+        }
+        made.limited_by = ("effort", limit.line());
+        made.drive = match (limit.limit("effort")?, has("effort")) {
+            (Some(effort), _) if effort > 0.0 => TreeDrive::Torque(Some(effort)),
+            (Some(_), _) | (None, false) => TreeDrive::None,
+            // So large that it is none.
+            (None, true) => TreeDrive::Torque(None),
+        };
     }
-    if joint.first("mimic").is_some() {
-        let why = "a joint here follows no other: it moves freely or is held";
-        left_out.push(LeftOut::new("mimic", Some(name), why));
+    if let Some(safety) = joint.first("safety_controller") {
+        let why = "a controller is no part of a model";
+        made.leave("safety_controller", safety.line(), why);
     }
-    if joint.first("safety_controller").is_some() {
-        left_out.push(LeftOut::new(
-            "safety_controller",
-            Some(name),
-            "a controller is no part of a model",
-        ));
+    let unknown = joint
+        .elements()
+        .filter(|own| !OF_JOINT.contains(&own.tag()));
+    for unknown in unknown.chain(joint.foreign()) {
+        made.leave(unknown.tag(), unknown.line(), "an element that is not read");
     }
-    Ok(Some(made))
+    Ok(())
 }

@@ -1,25 +1,47 @@
 //! A planar chain as a model file.
 
 use super::planar::{PlanarChain, PlanarLink};
-use super::tree::{LeftOut, TreeDrive};
-use crate::effects::{Axis, named, on_axis};
-use crate::error::Result;
+use super::tree::{Remark, TreeDrive};
+use crate::effects::{Axis, Parameter, named, on_axis};
+use crate::error::{Error, Place, Result};
+use crate::model::field::POSITIVE;
 use crate::model::new_model::{LinkPlan, ModelPlan, model_toml};
 use std::fmt::Write as _;
+use std::path::Path;
 
+/// Heaviest gravity of a model, m/s^2.
+const MOST_GRAVITY_M_S2: f64 = 100.0;
+
+/// The model file; `path` is the robot's.
+///
+/// # Errors
+/// Figures that no model has, with their place in the robot's file.
 pub(super) fn toml(
     name: &str,
-    chain: &PlanarChain,
+    chain: &mut PlanarChain,
     format: &str,
-    left_out: &mut Vec<LeftOut>,
+    path: &Path,
+    left_out: &mut Vec<Remark>,
 ) -> Result<String> {
+    possible(chain, path)?;
     let mut effects = String::new();
-    for (index, link) in chain.links.iter().enumerate() {
-        write_effects(&mut effects, index, link, left_out);
+    for (index, link) in chain.links.iter_mut().enumerate() {
+        possible_drive(link);
+        write_effects(&mut effects, index, link, format);
     }
+    left_out.extend(
+        chain
+            .links
+            .iter()
+            .flat_map(|link| link.joint.left_out.clone()),
+    );
+    let name = name.replace(char::is_control, " ");
     let plan = ModelPlan {
         guessed: false,
-        name: name.replace(char::is_control, " "),
+        name: match name.trim() {
+            "" => "robot".to_string(),
+            _ => name,
+        },
         angle_zero: "hanging".to_string(),
         angles: "relative".to_string(),
         gravity_m_s2: Some(chain.gravity_m_s2),
@@ -30,32 +52,100 @@ pub(super) fn toml(
          # joint coordinates into them. Columns are named after the joints: mend them for your logs.\n",
         format.to_uppercase()
     );
-    for part in left_out.iter() {
-        let of = part
-            .name
-            .as_ref()
-            .map_or(String::new(), |name| format!(" of {name}"));
-        let line = format!("{}{of}: {}", part.part, part.why);
-        let _ = writeln!(
-            head,
-            "# Not carried: {}",
-            line.replace(char::is_control, " ")
-        );
+    let notes = chain.notes.iter().map(|note| format!("Note: {note}"));
+    let left = left_out.iter().map(|part| format!("Not carried: {part}"));
+    for line in notes.chain(left) {
+        let _ = writeln!(head, "# {}", line.replace(char::is_control, " "));
     }
-    model_toml(
+    let text = model_toml(
         &plan,
         &(head + "\n"),
         &format!("{effects}{}", log_table(chain)),
-    )
+    );
+    // The model's text is not there for anyone to look into.
+    text.map_err(|error| match &error {
+        Error::Data { reason, .. } => {
+            let remedy = error.remedy().unwrap_or_default().into_owned();
+            let what = format!("no model follows from its figures: {reason}");
+            Error::data(Place::file(path), what, remedy)
+        }
+        _ => error,
+    })
 }
 
-fn link_plan(link: &PlanarLink) -> LinkPlan {
-    let (drive, gain, stall, speed) = match link.joint.drive {
+/// Refuses figures of links that no model has: their bounds are those of `[[link]]` and `[rig]`.
+fn possible(chain: &PlanarChain, path: &Path) -> Result<()> {
+    let most = POSITIVE.1;
+    for link in &chain.links {
+        let figures = [
+            ("a mass", link.mass_kg, "kg"),
+            ("a moment of inertia", link.inertia_kg_m2, "kg m^2"),
+            ("a length", link.length_m, "m"),
+            ("a centre of mass at", link.com_m, "m"),
+        ];
+        for (what, value, unit) in figures {
+            if value.abs() > most {
+                let (name, line) = &link.body;
+                let place = Place {
+                    line: Some(*line),
+                    ..Place::file(path)
+                };
+                let what = format!(
+                    "the link {name}, with what is fixed to it, has {what} {value:.4e} {unit}"
+                );
+                let remedy =
+                    format!("a model's links have up to {most} {unit}: is the unit right?");
+                return Err(Error::data(place, what, remedy));
+            }
+        }
+    }
+    if chain.gravity_m_s2 > MOST_GRAVITY_M_S2 {
+        let what = format!("gravity of {:.4e} m/s^2", chain.gravity_m_s2);
+        let remedy = format!("a model has up to {MOST_GRAVITY_M_S2} m/s^2: is the unit right?");
+        return Err(Error::data(Place::file(path), what, remedy));
+    }
+    Ok(())
+}
+
+/// Whether a figure of a drive is one that a model may have.
+fn is_possible(value: f64) -> bool {
+    value > 0.0 && value <= POSITIVE.1
+}
+
+/// Replaces a drive whose figures no model has by a torque, and says so.
+fn possible_drive(link: &mut PlanarLink) {
+    let figures = drive_figures(&link.joint.drive);
+    let of_drive = [figures.gain, figures.stall];
+    if of_drive.into_iter().flatten().all(is_possible) {
+        return;
+    }
+    let (by, line) = link.joint.limited_by;
+    let most = POSITIVE.1;
+    let limit_nm = figures.stall.filter(|_| !by.is_empty());
+    let why = format!(
+        "its stiffness or limit makes a gain or a stall torque beyond the {most} that a drive here \
+         has: its joint is driven by torque"
+    );
+    link.joint.drive = TreeDrive::Torque(limit_nm);
+    link.joint.leave("actuator", line, why);
+}
+
+/// What a drive is called, and its figures, of which a model has bounds.
+struct DriveFigures {
+    name: &'static str,
+    gain: Option<f64>,
+    stall: Option<f64>,
+    speed: Option<f64>,
+}
+
+fn drive_figures(drive: &TreeDrive) -> DriveFigures {
+    let (name, gain, stall, speed) = match *drive {
         TreeDrive::None => ("passive", None, None, None),
         TreeDrive::Torque(_) => ("torque", None, None, None),
         TreeDrive::Duty {
             stall_nm,
             damping_nm_s,
+            ..
         } => ("duty", None, Some(stall_nm), Some(stall_nm / damping_nm_s)),
         TreeDrive::Position {
             stiffness_nm,
@@ -72,82 +162,114 @@ fn link_plan(link: &PlanarLink) -> LinkPlan {
             limit_nm,
         } => ("speed", Some(gain_nm_s / limit_nm), Some(limit_nm), None),
     };
+    // Torque that falls to nothing beyond all speeds hardly falls.
+    let speed = speed.filter(|speed| *speed <= POSITIVE.1);
+    DriveFigures {
+        name,
+        gain,
+        stall,
+        speed,
+    }
+}
+
+fn link_plan(link: &PlanarLink) -> LinkPlan {
+    let drive = drive_figures(&link.joint.drive);
     LinkPlan {
         length_m: link.length_m,
         com_m: link.com_m,
         mass_kg: link.mass_kg,
-        inertia_kg_m2: Some(link.inertia_kg_m2.max(0.0)),
-        drive: drive.to_string(),
-        gain,
-        stall_torque_nm: stall,
-        no_load_speed_rad_s: speed,
+        inertia_kg_m2: Some(link.inertia_kg_m2),
+        drive: drive.name.to_string(),
+        gain: drive.gain,
+        stall_torque_nm: drive.stall,
+        no_load_speed_rad_s: drive.speed,
         slide: link.slide,
     }
 }
 
-fn write_effects(text: &mut String, index: usize, link: &PlanarLink, left_out: &mut Vec<LeftOut>) {
-    let joint = &link.joint;
+/// What acts on a joint: the effect, the attribute and its line, and the values.
+struct Acting<'a> {
+    kind: &'a str,
+    attribute: (&'a str, usize),
+    values: &'a [f64],
+}
+
+/// Writes an effect, or says that its values are beyond what it may have.
+fn write_effect(text: &mut String, index: usize, link: &mut PlanarLink, acting: &Acting) {
     let axis = match link.slide {
         None => Axis::Hinge,
         Some(_) => Axis::Slide,
     };
-    let key = |kind: &str, index: usize| {
-        let effect = named(kind).and_then(|effect| on_axis(effect, axis));
-        effect.map_or("", |effect| effect.info().parameters[index].key)
-    };
-    let mut effect = |kind: &str, values: &[(&str, f64)]| {
-        let _ = write!(
-            text,
-            "\n[[effect]]\nkind = \"{kind}\"\njoint = {}\n",
-            index + 1
-        );
-        for (key, value) in values {
-            let _ = writeln!(text, "{key} = {}", toml_edit::Value::from(*value));
+    let known = named(acting.kind).and_then(|effect| on_axis(effect, axis));
+    let parameters: &[Parameter] = known.map_or(&[], |effect| effect.info().parameters);
+    let (attribute, line) = acting.attribute;
+    for (own, value) in parameters.iter().zip(acting.values) {
+        let (low, high) = own.bounds;
+        if !(low..=high).contains(value) {
+            let unit = own.unit;
+            let why = format!("{value} {unit}; `{}` here has {low} to {high}", acting.kind);
+            link.joint.leave(attribute, line, why);
+            return;
         }
+    }
+    let _ = write!(
+        text,
+        "\n[[effect]]\nkind = \"{}\"\njoint = {}\n",
+        acting.kind,
+        index + 1
+    );
+    for (own, value) in parameters.iter().zip(acting.values) {
+        let _ = writeln!(text, "{} = {}", own.key, toml_edit::Value::from(*value));
+    }
+}
+
+fn write_effects(text: &mut String, index: usize, link: &mut PlanarLink, format: &str) {
+    let joint = link.joint.clone();
+    let com_angle_rad = link.com_angle_rad;
+    let sign = if link.reversed { -1.0 } else { 1.0 };
+    let rest_rad = link.offset_rad + sign * joint.spring_rest_rad;
+    let friction = match format {
+        "urdf" => "friction",
+        _ => "frictionloss",
     };
-    let mut leave = |part: &str, why: &str| {
-        left_out.push(LeftOut::new(part, Some(&joint.name), why));
+    let mut effect = |kind: &str, attribute: (&str, usize), values: &[f64]| {
+        let acting = Acting {
+            kind,
+            attribute,
+            values,
+        };
+        write_effect(text, index, link, &acting);
     };
-    if link.com_angle_rad != 0.0 {
-        effect("com_angle", &[("angle_rad", link.com_angle_rad)]);
+    let of_joint = |attribute| (attribute, joint.line);
+    if com_angle_rad != 0.0 {
+        effect("com_angle", of_joint("inertial"), &[com_angle_rad]);
     }
-    if joint.damping_nm_s > 0.0 {
-        effect("viscous", &[(key("viscous", 0), joint.damping_nm_s)]);
+    if joint.damping_nm_s != 0.0 {
+        effect("viscous", of_joint("damping"), &[joint.damping_nm_s]);
     }
-    if joint.friction_nm > 0.0 {
-        effect("coulomb", &[(key("coulomb", 0), joint.friction_nm)]);
+    if joint.friction_nm != 0.0 {
+        effect("coulomb", of_joint(friction), &[joint.friction_nm]);
     }
-    if joint.armature_kg_m2 > 0.0 {
+    if joint.stiffness_nm != 0.0 {
+        let values = [joint.stiffness_nm, rest_rad];
+        effect("cable_spring", of_joint("stiffness"), &values);
+    }
+    if let TreeDrive::Torque(Some(limit_nm))
+    | TreeDrive::Duty {
+        limit_nm: Some(limit_nm),
+        ..
+    } = joint.drive
+    {
+        effect("torque_saturation", joint.limited_by, &[limit_nm]);
+    }
+    if joint.armature_kg_m2 != 0.0 {
         match joint.drive {
-            TreeDrive::None => leave("armature", "a rotor needs a drive: --driven makes it one"),
-            _ => effect("armature", &[(key("armature", 0), joint.armature_kg_m2)]),
+            TreeDrive::None => {
+                let why = "a rotor needs a drive: --driven makes it one";
+                link.joint.leave("armature", joint.line, why);
+            }
+            _ => effect("armature", of_joint("armature"), &[joint.armature_kg_m2]),
         }
-    }
-    if joint.stiffness_nm > 0.0 {
-        let sign = if link.reversed { -1.0 } else { 1.0 };
-        let rest_rad = link.offset_rad + sign * joint.spring_rest_rad;
-        effect(
-            "cable_spring",
-            &[
-                (key("cable_spring", 0), joint.stiffness_nm),
-                (key("cable_spring", 1), rest_rad),
-            ],
-        );
-    }
-    if let TreeDrive::Torque(Some(limit_nm)) = joint.drive {
-        effect(
-            "torque_saturation",
-            &[(key("torque_saturation", 0), limit_nm)],
-        );
-    }
-    if joint.range_rad.is_some() {
-        leave("range", "links here have no end stops");
-    }
-    if joint.speed_rad_s.is_some() {
-        leave(
-            "velocity limit",
-            "no drive here stops at a speed of its own; see speed_limit",
-        );
     }
 }
 

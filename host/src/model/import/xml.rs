@@ -7,13 +7,16 @@ use std::path::Path;
 
 /// Most elements and texts of a file; a robot with meshes has thousands.
 const MOST_NODES: u32 = 1_000_000;
-/// Largest number that a robot's file can mean.
+/// Largest number that a robot's file can mean. Exporters write larger ones, or infinity, where
+/// nothing limits.
 const LARGEST: f64 = 1e9;
 
 /// A file and its elements.
 pub(super) struct XmlFile<'a> {
     pub path: &'a Path,
     pub document: Document<'a>,
+    /// Where each line but the first begins: positions are asked for each element.
+    lines: Vec<usize>,
 }
 
 /// An element with its file.
@@ -39,7 +42,12 @@ impl<'a> XmlFile<'a> {
                 "write the robot's file as XML",
             )
         })?;
-        Ok(XmlFile { path, document })
+        let lines = text.match_indices('\n').map(|(at, _)| at + 1).collect();
+        Ok(XmlFile {
+            path,
+            document,
+            lines,
+        })
     }
 
     pub fn root(&'a self) -> Element<'a> {
@@ -55,10 +63,32 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
+    /// The elements within it, but those of another namespace than the root's.
     pub fn elements(&self) -> impl Iterator<Item = Element<'a>> + use<'a> {
+        self.children().filter(|element| !element.is_foreign())
+    }
+
+    /// The elements within it of a vendor's namespace.
+    pub fn foreign(&self) -> impl Iterator<Item = Element<'a>> + use<'a> {
+        self.children().filter(Element::is_foreign)
+    }
+
+    fn children(&self) -> impl Iterator<Item = Element<'a>> + use<'a> {
         let file = self.file;
         let nodes = self.node.children().filter(Node::is_element);
         nodes.map(move |node| Element { file, node })
+    }
+
+    fn is_foreign(&self) -> bool {
+        let root = self.file.document.root_element();
+        let own = self.node.tag_name().namespace();
+        own.is_some() && own != root.tag_name().namespace()
+    }
+
+    /// Line on which it begins.
+    pub fn line(&self) -> usize {
+        let at = self.node.range().start;
+        1 + self.file.lines.partition_point(|line| *line <= at)
     }
 
     pub fn all(&self, tag: &'a str) -> impl Iterator<Item = Element<'a>> + use<'a> {
@@ -71,6 +101,12 @@ impl<'a> Element<'a> {
 
     pub fn text(&self, key: &str) -> Option<&'a str> {
         self.node.attribute(key)
+    }
+
+    /// The names of its attributes but these.
+    pub fn others(&self, known: &[&str]) -> Vec<&'a str> {
+        let names = self.node.attributes().map(|own| own.name());
+        names.filter(|name| !known.contains(name)).collect()
     }
 
     /// # Errors
@@ -109,17 +145,41 @@ impl<'a> Element<'a> {
             .transpose()
     }
 
+    /// A limit; none where the file has none, or one so large that it is none.
+    ///
+    /// # Errors
+    /// An attribute that is no number.
+    pub fn limit(&self, key: &str) -> Result<Option<f64>> {
+        let limit = |text: &'a str| self.limit_of(key, text);
+        Ok(self.text(key).map(limit).transpose()?.flatten())
+    }
+
+    /// As [`Element::limit`], of a text.
+    pub fn limit_of(&self, key: &str, text: &str) -> Result<Option<f64>> {
+        let endless = |value: &f64| value.abs() >= LARGEST;
+        match text.trim().parse::<f64>() {
+            Ok(value) if endless(&value) => Ok(None),
+            _ => self.one_number(key, text).map(Some),
+        }
+    }
+
     pub fn one_number(&self, key: &str, text: &str) -> Result<f64> {
-        let value = text.trim().parse::<f64>().ok();
-        value
-            .filter(|value| value.is_finite() && value.abs() <= LARGEST)
-            .ok_or_else(|| {
-                let text: String = text.chars().take(40).collect();
-                self.wrong(
-                    format!("{key}=\"{text}\" is no number"),
-                    "write a number such as 0.25",
-                )
-            })
+        let shown: String = text.chars().take(40).collect();
+        if shown.contains("${") {
+            let what = format!("{key}=\"{shown}\" is a property of xacro");
+            return Err(self.wrong(what, super::urdf::EXPAND));
+        }
+        match text.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() && value.abs() <= LARGEST => Ok(value),
+            Ok(value) if !value.is_nan() => Err(self.wrong(
+                format!("{key}=\"{shown}\" is larger than a robot's file can mean"),
+                "write a number up to 1e9",
+            )),
+            _ => Err(self.wrong(
+                format!("{key}=\"{shown}\" is no number"),
+                "write a number such as 0.25",
+            )),
+        }
     }
 
     pub fn numbers_of(&self, key: &str, text: &str) -> Result<Vec<f64>> {

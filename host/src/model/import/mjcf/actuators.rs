@@ -2,54 +2,184 @@
 
 use super::Reader;
 use super::defaults::Attributes;
-use crate::error::Result;
-use crate::model::import::tree::{LeftOut, TreeDrive};
+use super::option::Options;
+use super::orientation::Compiler;
+use crate::error::{Error, Result};
+use crate::model::import::tree::{Fault, FaultyPart, Remark, TreeDrive, TreeJoint};
 use crate::model::import::xml::Element;
+
+/// Attributes that are read, or say nothing of an actuator at a joint without dynamics of its own.
+const READ: [&str; 26] = [
+    "actdim",
+    "actearly",
+    "actlimited",
+    "actrange",
+    "biasprm",
+    "biastype",
+    "class",
+    "ctrllimited",
+    "ctrlrange",
+    "dampratio",
+    "dynprm",
+    "dyntype",
+    "forcelimited",
+    "forcerange",
+    "gainprm",
+    "gaintype",
+    "gear",
+    "group",
+    "joint",
+    "jointinparent",
+    "kp",
+    "kv",
+    "lengthrange",
+    "name",
+    "timeconst",
+    "user",
+];
 
 /// torque = gain u + bias0 + bias1 q + bias2 w, at most `limit_nm`.
 struct Affine {
+    gear: f64,
     gain: f64,
     bias: [f64; 3],
     limit_nm: Option<f64>,
+    limited_by: &'static str,
     /// Whether u lies between -1 and 1.
     is_share: bool,
 }
 
-pub(super) fn read(actuators: Element, reader: &mut Reader) -> Result<()> {
+/// A range that limits both ways alike: so much, or not at all; or why a limit here is not like it.
+pub(super) fn symmetric(
+    element: Element,
+    key: &str,
+    text: &str,
+) -> Result<std::result::Result<Option<f64>, String>> {
+    let ends: Vec<&str> = text.split_whitespace().collect();
+    let [low, high] = ends[..] else {
+        return Err(element.wrong(format!("{key} has {} numbers", ends.len()), "write two"));
+    };
+    let ends = (element.limit_of(key, low)?, element.limit_of(key, high)?);
+    Ok(match ends {
+        // Not given, as in MuJoCo.
+        (Some(0.0), Some(0.0)) | (None, None) => Ok(None),
+        (Some(low), Some(high)) if low == -high && high > 0.0 => Ok(Some(high)),
+        _ => Err(format!(
+            "from {low} to {high}; a limit here is the same both ways, so none is taken"
+        )),
+    })
+}
+
+pub(super) fn read(actuators: Element, reader: &mut Reader) {
     for element in actuators.elements() {
-        let own = reader.defaults.attributes(element, None)?;
-        let Some(joint) = own.text("joint") else {
-            let why = "it moves no joint";
+        if let Err((body, error)) = one(element, reader) {
             reader
-                .left_out
-                .push(LeftOut::new(element.tag(), element.text("name"), why));
-            continue;
-        };
-        let (drive, why) = match affine(&own)? {
-            Some(affine) => drive(&affine),
-            None => (
-                TreeDrive::None,
-                Some("no drive here is like it; the joint is passive"),
-            ),
-        };
-        let mut joints = reader.bodies.iter_mut().flat_map(|body| &mut body.joints);
-        let Some(found) = joints.find(|known| known.name == joint) else {
-            return Err(element.wrong(format!("there is no joint \"{joint}\""), "mend the name"));
-        };
-        let second = found.drive != TreeDrive::None;
-        if second {
-            let why = "the joint has another, which is taken";
-            reader
-                .left_out
-                .push(LeftOut::new(element.tag(), Some(joint), why));
+                .faults
+                .push(Fault::new(body, FaultyPart::Joint, &error));
+        }
+    }
+}
+
+/// Reads an actuator; what is wrong with it, and the body of its joint.
+fn one(element: Element, reader: &mut Reader) -> std::result::Result<(), (usize, Error)> {
+    let line = element.line();
+    let mut leave = |name: Option<&str>, why: &str| {
+        let remark = Remark::new(element.tag(), name, why);
+        reader.left_out.push(remark.on(line));
+    };
+    // A class that is not there is no fault of a joint.
+    let own = match reader.defaults.attributes(element, None) {
+        Ok(own) => own,
+        Err(error) => {
+            leave(element.text("name"), &error.to_string());
+            return Ok(());
+        }
+    };
+    let Some(name) = own.text("joint").or(own.text("jointinparent")) else {
+        leave(element.text("name"), "it moves no joint");
+        return Ok(());
+    };
+    let has = |joint: &TreeJoint| joint.name == name;
+    let bodies = &mut reader.bodies;
+    let Some(body) = bodies.iter().position(|body| body.joints.iter().any(has)) else {
+        leave(
+            element.text("name"),
+            &format!("there is no joint \"{name}\""),
+        );
+        return Ok(());
+    };
+    let group = own.text("group").unwrap_or("0");
+    let is_off =
+        !reader.options.actuation || reader.options.groups_off.iter().any(|off| off == group);
+    for joint in bodies[body].joints.iter_mut().filter(|joint| has(joint)) {
+        if is_off {
+            joint.leave(element.tag(), line, "<option> switches it off");
             continue;
         }
-        found.drive = drive;
-        if let Some(why) = why {
-            reader
-                .left_out
-                .push(LeftOut::new(element.tag(), Some(joint), why));
+        if joint.drive != TreeDrive::None {
+            joint.leave(element.tag(), line, "the joint has another, which is taken");
+            continue;
         }
+        let settings = (&reader.compiler, &reader.options);
+        take(&own, settings, joint).map_err(|error| (body, error))?;
+    }
+    Ok(())
+}
+
+/// Gives a joint the drive that an actuator is.
+fn take(
+    own: &Attributes,
+    (compiler, options): (&Compiler, &Options),
+    joint: &mut TreeJoint,
+) -> Result<()> {
+    let (tag, line) = (own.element.tag(), own.element.line());
+    let Some(mut affine) = affine(own)? else {
+        joint.leave(tag, line, "no drive here is like it; the joint is passive");
+        return Ok(());
+    };
+    let mut range = |key: &'static str, limited: &str| -> Result<Option<f64>> {
+        let Some(text) = own.text(key).filter(|_| compiler.limits(own, limited)) else {
+            return Ok(None);
+        };
+        let limit = symmetric(own.element, key, text)?;
+        Ok(limit.unwrap_or_else(|why| {
+            joint.leave(key, line, why);
+            None
+        }))
+    };
+    let gear = affine.gear;
+    let force = range("forcerange", "forcelimited")?.map(|most| (gear * most).abs());
+    let control = match options.clamps {
+        true => range("ctrlrange", "ctrllimited")?,
+        false => None,
+    };
+    affine.is_share = control == Some(1.0);
+    let is_plain = affine.bias == [0.0; 3];
+    let of_control = control.map(|most| (affine.gain * most).abs());
+    for (limit, by) in [
+        (force, "forcerange"),
+        (of_control.filter(|_| is_plain), "ctrlrange"),
+        (joint.most_nm, "actuatorfrcrange"),
+    ] {
+        if let Some(limit) = limit.filter(|own| affine.limit_nm.is_none_or(|least| *own < least)) {
+            (affine.limit_nm, affine.limited_by) = (Some(limit), by);
+        }
+    }
+    let (drive, why) = drive(&affine);
+    let is_duty = matches!(drive, TreeDrive::Duty { .. });
+    if control.is_some() && !is_plain && !is_duty {
+        joint.leave(
+            "ctrlrange",
+            line,
+            "what is asked of a drive here has no limit",
+        );
+    }
+    (joint.drive, joint.limited_by) = (drive, (affine.limited_by, line));
+    if let Some(why) = why {
+        joint.leave(tag, line, why);
+    }
+    for key in own.others(&READ) {
+        joint.leave(key, line, "an attribute that is not read");
     }
     Ok(())
 }
@@ -94,25 +224,14 @@ fn affine(own: &Attributes) -> Result<Option<Affine>> {
         return Ok(None);
     }
     let gear = number("gear", 1.0)?;
-    let range = |key: &str| -> Result<Option<[f64; 2]>> {
-        let values = own.numbers(key)?;
-        Ok(values.and_then(|values| <[f64; 2]>::try_from(values).ok()))
-    };
-    let force = range("forcerange")?.filter(|[low, high]| *low == -*high && *high > 0.0);
-    let control = range("ctrlrange")?.filter(|[low, high]| *low == -*high && *high > 0.0);
-    let plain = bias == [0.0; 3];
-    let of_control = control
-        .filter(|_| plain)
-        .map(|[_, high]| (gain * high).abs());
     Ok(Some(Affine {
+        gear,
         // Seen from the joint, the actuator's length is the gear times the angle.
         gain: gear * gain,
         bias: [gear * bias[0], gear * gear * bias[1], gear * gear * bias[2]],
-        limit_nm: force
-            .map(|[_, high]| high)
-            .or(of_control)
-            .map(|limit| (gear * limit).abs()),
-        is_share: control.is_some_and(|[_, high]| high == 1.0),
+        limit_nm: None,
+        limited_by: "",
+        is_share: false,
     }))
 }
 
@@ -123,6 +242,7 @@ fn drive(affine: &Affine) -> (TreeDrive, Option<&'static str>) {
         bias,
         limit_nm,
         is_share,
+        ..
     } = *affine;
     let torque = (TreeDrive::Torque(limit_nm), None);
     match bias {
@@ -172,6 +292,7 @@ fn drive(affine: &Affine) -> (TreeDrive, Option<&'static str>) {
             TreeDrive::Duty {
                 stall_nm: gain,
                 damping_nm_s: -damping,
+                limit_nm,
             },
             None,
         ),

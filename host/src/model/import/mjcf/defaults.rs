@@ -91,6 +91,16 @@ impl<'a> Attributes<'a> {
             .or_else(|| self.from_class.get(key).copied())
     }
 
+    /// Names of its attributes and its class's but these.
+    pub fn others(&self, known: &[&str]) -> Vec<&'a str> {
+        let of_class = self.from_class.keys().copied();
+        let mut names = self.element.others(known);
+        names.extend(of_class.filter(|name| !known.contains(name)));
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
     /// # Errors
     /// An attribute that is no numbers.
     pub fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>> {

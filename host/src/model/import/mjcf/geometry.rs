@@ -16,8 +16,17 @@ const DENSITY: f64 = 1000.0;
 /// Meshes and other shapes whose mass the file does not say.
 pub(super) fn inertial(own: &Attributes, compiler: &Compiler) -> Result<Inertial> {
     let kind = own.text("type").unwrap_or("sphere");
-    if ["plane", "hfield"].contains(&kind) || own.number("mass")? == Some(0.0) {
+    let massless = |key: &str| own.number(key).map(|value| value == Some(0.0));
+    let light = massless("mass")? || own.text("mass").is_none() && massless("density")?;
+    if ["plane", "hfield"].contains(&kind) || light || !counts(own, compiler)? {
         return Ok(Inertial::NONE);
+    }
+    if own.text("mesh").is_some() || ["mesh", "sdf"].contains(&kind) {
+        let what = match own.text("mass") {
+            None => "the mass of a mesh is not in the file",
+            Some(_) => "of this mesh the file has the mass, not its centre and moments",
+        };
+        return Err(own.element.wrong(what, super::FLATTEN));
     }
     if own.text("shellinertia") == Some("true") {
         return Err(own
@@ -48,25 +57,27 @@ pub(super) fn inertial(own: &Attributes, compiler: &Compiler) -> Result<Inertial
             _ => vec![radius, radius, half],
         };
     }
+    // Writers fill up with zeros what a shape does not take.
+    size.truncate(match kind {
+        "sphere" => 1,
+        "capsule" | "cylinder" => 2,
+        _ => 3,
+    });
     if size.iter().any(|size| *size <= 0.0) {
         return Err(wrong());
     }
     let (volume, moments) = match (kind, size.as_slice()) {
-        ("sphere", [r, ..]) => (4.0 / 3.0 * PI * r.powi(3), Vector3::repeat(0.4 * r * r)),
+        ("sphere", [r]) => (4.0 / 3.0 * PI * r.powi(3), Vector3::repeat(0.4 * r * r)),
         ("ellipsoid", [a, b, c]) => (4.0 / 3.0 * PI * a * b * c, squares(*a, *b, *c) / 5.0),
         ("box", [a, b, c]) => (8.0 * a * b * c, squares(*a, *b, *c) / 3.0),
-        ("cylinder", [r, half, ..]) => {
+        ("cylinder", [r, half]) => {
             let across = r * r / 4.0 + half * half / 3.0;
             (
                 2.0 * PI * r * r * half,
                 Vector3::new(across, across, r * r / 2.0),
             )
         }
-        ("capsule", [r, half, ..]) => capsule(*r, *half),
-        ("mesh" | "sdf", _) => {
-            let what = "the mass of a mesh is not in the file";
-            return Err(own.element.wrong(what, super::FLATTEN));
-        }
+        ("capsule", [r, half]) => capsule(*r, *half),
         _ => return Err(wrong()),
     };
     let density = own.number("density")?.unwrap_or(DENSITY);
@@ -80,6 +91,15 @@ pub(super) fn inertial(own: &Attributes, compiler: &Compiler) -> Result<Inertial
         inertia_kg_m2: Matrix3::from_diagonal(&(moments * mass_kg)),
     };
     Ok(shape.seen_from(&pose))
+}
+
+/// Whether a shape is of a group that has mass.
+fn counts(own: &Attributes, compiler: &Compiler) -> Result<bool> {
+    let Some((low, high)) = compiler.groups else {
+        return Ok(true);
+    };
+    let group = own.number("group")?.unwrap_or(0.0);
+    Ok((low..=high).contains(&group))
 }
 
 /// b^2 + c^2 and so on round.

@@ -5,19 +5,56 @@ use super::super::xml::Element;
 use super::defaults::Attributes;
 use super::{DEEPEST, Reader, geometry};
 use crate::error::Result;
-use nalgebra::{Isometry3, Matrix3, Point3, Translation3};
+use crate::model::import::inertia::checked;
+use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Vector3};
 
 impl Reader<'_> {
-    pub(super) fn inertial(&self, body: Element, class: Option<&str>) -> Result<Inertial> {
+    /// What a body weighs, and what no body's moments can be.
+    pub(super) fn inertial(
+        &self,
+        body: Element,
+        class: Option<&str>,
+    ) -> Result<(Inertial, Option<String>)> {
         let given = body.first("inertial");
-        match given.filter(|_| self.compiler.from_shapes != Some(true)) {
-            Some(inertial) => self.given(inertial),
-            None if self.compiler.from_shapes == Some(false) => Ok(Inertial::NONE),
-            None => self.of_shapes(body, class, &Isometry3::identity(), 0),
+        let (inertial, impossible) = match given.filter(|_| self.compiler.from_shapes != Some(true))
+        {
+            Some(inertial) => self.given(inertial)?,
+            None if self.compiler.from_shapes == Some(false) => (Inertial::NONE, None),
+            None => {
+                let shapes = self.of_shapes(body, class, &Isometry3::identity(), 0)?;
+                (shapes, None)
+            }
+        };
+        let bounded = self.bounded(inertial);
+        Ok((bounded, impossible.filter(|_| bounded == inertial)))
+    }
+
+    /// A mass and moments as `<compiler>` bounds and balances them.
+    fn bounded(&self, inertial: Inertial) -> Inertial {
+        let compiler = &self.compiler;
+        let mass_kg = inertial.mass_kg.max(compiler.least_kg);
+        let frame = inertial.inertia_kg_m2.symmetric_eigen();
+        let mut moments = frame.eigenvalues.map(|own| own.max(compiler.least_kg_m2));
+        let (sum, most) = (moments.sum(), moments.max());
+        if compiler.balances && sum < 2.0 * most {
+            moments = Vector3::repeat(sum / 3.0);
+        }
+        let inertia_kg_m2 = match moments == frame.eigenvalues {
+            true => inertial.inertia_kg_m2,
+            false => {
+                frame.eigenvectors
+                    * Matrix3::from_diagonal(&moments)
+                    * frame.eigenvectors.transpose()
+            }
+        };
+        Inertial {
+            mass_kg,
+            inertia_kg_m2,
+            ..inertial
         }
     }
 
-    fn given(&self, element: Element) -> Result<Inertial> {
+    fn given(&self, element: Element) -> Result<(Inertial, Option<String>)> {
         let own = Attributes::own(element);
         let mass_kg = element
             .required("mass")
@@ -33,16 +70,15 @@ impl Reader<'_> {
             (None, Some(diagonal)) => Matrix3::from_diagonal(&diagonal),
             (None, None) => Matrix3::zeros(),
         };
-        if mass_kg < 0.0 || (0..3).any(|i| inertia_kg_m2[(i, i)] < 0.0) {
-            return Err(element.wrong("a mass or a moment of inertia is below 0", "mend its sign"));
-        }
+        let (inertia_kg_m2, impossible) = checked(element, mass_kg, inertia_kg_m2)?;
         let turn = self.compiler.orientation(&own)?.unwrap_or_default();
         let inertial = Inertial {
             mass_kg,
             com_m: Point3::origin(),
             inertia_kg_m2,
         };
-        Ok(inertial.seen_from(&Isometry3::from_parts(Translation3::from(com), turn)))
+        let inertial = inertial.seen_from(&Isometry3::from_parts(Translation3::from(com), turn));
+        Ok((inertial, impossible))
     }
 
     fn of_shapes(

@@ -4,38 +4,70 @@ mod actuators;
 mod defaults;
 mod geometry;
 mod inertials;
+mod joints;
+mod option;
 mod orientation;
 
-use super::tree::{Inertial, JointMotion, LeftOut, RobotTree, TreeBody, TreeJoint};
+use super::tree::{Fault, FaultyPart, Inertial, Remark, RobotTree, TreeBody};
 use super::xml::Element;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use defaults::{Attributes, Defaults};
-use nalgebra::{Isometry3, Point3, Translation3, Vector3};
+use nalgebra::{Isometry3, Translation3};
+use option::Options;
 use orientation::Compiler;
 
 /// Bodies within bodies; deeper, a file is no robot's.
 const DEEPEST: usize = 200;
 
-/// Elements that build other bodies, or change masses, when MuJoCo compiles the file.
-const BUILT: [&str; 6] = [
-    "include",
-    "attach",
-    "replicate",
-    "composite",
-    "flexcomp",
-    "plugin",
+/// Elements of which MuJoCo makes bodies when it compiles the file.
+const BUILT: [&str; 3] = ["include", "attach", "replicate"];
+/// Elements that give the body around them more masses or forces.
+const GROWN: [&str; 3] = ["composite", "flexcomp", "plugin"];
+/// Attributes of bodies that are read, or move no force.
+const OF_BODY: [&str; 15] = [
+    "name",
+    "childclass",
+    "pos",
+    "quat",
+    "axisangle",
+    "euler",
+    "xyaxes",
+    "zaxis",
+    "gravcomp",
+    "mocap",
+    "user",
+    "fuse",
+    "simple",
+    "sleep",
+    "class",
+];
+/// Parts of the file that are read, or move no force of a chain.
+const READ: [&str; 10] = [
+    "compiler",
+    "option",
+    "size",
+    "statistic",
+    "visual",
+    "default",
+    "asset",
+    "worldbody",
+    "actuator",
+    "custom",
 ];
 
-/// What `mujoco` writes of a file that it has compiled.
-pub(super) const FLATTEN: &str = "let MuJoCo write it out flat: mujoco.mj_saveLastXML(\"flat.xml\", \
+/// What MuJoCo writes of a file that it has compiled; it leaves out the masses unless told.
+pub(super) const FLATTEN: &str = "put <compiler saveinertial=\"true\"/> into it and let MuJoCo \
+                                  write it out flat: mujoco.mj_saveLastXML(\"flat.xml\", \
                                   mujoco.MjModel.from_xml_path(\"robot.xml\"))";
 
 /// What is known while bodies are read.
 struct Reader<'a> {
     compiler: Compiler,
     defaults: Defaults<'a>,
+    options: Options,
     bodies: Vec<TreeBody>,
-    left_out: Vec<LeftOut>,
+    left_out: Vec<Remark>,
+    faults: Vec<Fault>,
     unnamed: usize,
 }
 
@@ -46,66 +78,48 @@ struct Reader<'a> {
 /// the file does not give.
 pub(super) fn tree(root: Element) -> Result<RobotTree> {
     let compiler = Compiler::of(root)?;
+    let mut options = Options::of(root)?;
+    let world = TreeBody {
+        name: "world".to_string(),
+        line: root.line(),
+        parent: None,
+        pose: Isometry3::identity(),
+        inertial: Inertial::NONE,
+        joints: Vec::new(),
+        borne: 0.0,
+        notes: Vec::new(),
+    };
     let mut reader = Reader {
         compiler,
         defaults: Defaults::of(root)?,
-        bodies: vec![TreeBody {
-            name: "world".to_string(),
-            parent: None,
-            pose: Isometry3::identity(),
-            inertial: Inertial::NONE,
-            joints: Vec::new(),
-        }],
-        left_out: Vec::new(),
+        left_out: std::mem::take(&mut options.left_out),
+        options,
+        bodies: vec![world],
+        faults: Vec::new(),
         unnamed: 0,
     };
-    let built = root
-        .elements()
-        .find(|element| BUILT.contains(&element.tag()));
-    if let Some(element) = built {
-        return Err(element.wrong(format!("<{}> is not read", element.tag()), FLATTEN));
-    }
-    let mut gravity_m_s2 = Vector3::new(0.0, 0.0, -9.81);
-    for option in root.all("option") {
-        gravity_m_s2 = option.vector("gravity")?.unwrap_or(gravity_m_s2);
-        for key in ["wind", "density", "viscosity"] {
-            if option
-                .numbers(key)?
-                .is_some_and(|values| values.iter().any(|v| *v != 0.0))
-            {
-                reader.left_out.push(LeftOut::new(
-                    key,
-                    None,
-                    "no medium moves around a chain here",
-                ));
-            }
+    for part in root.elements().chain(root.foreign()) {
+        if BUILT.contains(&part.tag()) {
+            return Err(part.wrong(format!("<{}> is not read", part.tag()), FLATTEN));
+        }
+        if !READ.contains(&part.tag()) && part.elements().next().is_some() {
+            let why = "no part of a chain of links";
+            let remark = Remark::new(part.tag(), None, why);
+            reader.left_out.push(remark.on(part.line()));
         }
     }
     for world in root.all("worldbody") {
         reader.children(world, 0, &Isometry3::identity(), None, 0)?;
     }
     for actuators in root.all("actuator") {
-        actuators::read(actuators, &mut reader)?;
-    }
-    for tag in [
-        "equality",
-        "tendon",
-        "contact",
-        "sensor",
-        "keyframe",
-        "deformable",
-    ] {
-        if root.all(tag).any(|part| part.elements().next().is_some()) {
-            reader
-                .left_out
-                .push(LeftOut::new(tag, None, "no part of a chain of links"));
-        }
+        actuators::read(actuators, &mut reader);
     }
     Ok(RobotTree {
         name: root.text("model").unwrap_or("robot").to_string(),
         bodies: reader.bodies,
-        gravity_m_s2,
+        gravity_m_s2: reader.options.gravity_m_s2,
         left_out: reader.left_out,
+        faults: reader.faults,
     })
 }
 
@@ -136,6 +150,15 @@ impl Reader<'_> {
                 tag if BUILT.contains(&tag) => {
                     return Err(child.wrong(format!("<{tag}> is not read"), FLATTEN));
                 }
+                tag if GROWN.contains(&tag) => {
+                    let error = child.wrong(format!("<{tag}> is not read"), FLATTEN);
+                    self.fault(parent, FaultyPart::Mass, &error);
+                    if parent == 0 {
+                        let why = "no part of a chain of links";
+                        let remark = Remark::new(tag, None, why);
+                        self.left_out.push(remark.on(child.line()));
+                    }
+                }
                 _ => {}
             }
         }
@@ -151,18 +174,25 @@ impl Reader<'_> {
         depth: usize,
     ) -> Result<()> {
         let class = body.text("childclass").or(class);
-        let pose = frame * self.pose(body)?;
         let index = self.bodies.len();
         self.unnamed += 1;
         let name = body
             .text("name")
             .map_or(format!("body{}", self.unnamed), str::to_string);
+        let pose = self.pose(body);
+        let pose = pose.unwrap_or_else(|error| {
+            self.fault(index, FaultyPart::Pose, &error);
+            Isometry3::identity()
+        });
         self.bodies.push(TreeBody {
-            name,
+            name: name.clone(),
+            line: body.line(),
             parent: Some(parent),
-            pose,
+            pose: frame * pose,
             inertial: Inertial::NONE,
             joints: Vec::new(),
+            borne: 0.0,
+            notes: Vec::new(),
         });
         for joint in body
             .elements()
@@ -171,8 +201,32 @@ impl Reader<'_> {
             let joint = self.joint(joint, class, index)?;
             self.bodies[index].joints.push(joint);
         }
-        self.bodies[index].inertial = self.inertial(body, class)?;
+        match self.inertial(body, class) {
+            Ok((inertial, impossible)) => {
+                self.bodies[index].inertial = inertial;
+                let note = |why| Remark::new("inertia", Some(&name), why).on(body.line());
+                self.bodies[index].notes.extend(impossible.map(note));
+            }
+            Err(error) => self.fault(index, FaultyPart::Mass, &error),
+        }
+        match body.number("gravcomp") {
+            Ok(borne) if self.options.compensates() => {
+                self.bodies[index].borne = borne.unwrap_or(0.0);
+            }
+            Ok(_) => {}
+            Err(error) => self.fault(index, FaultyPart::Mass, &error),
+        }
+        for key in body.others(&OF_BODY) {
+            let why = "an attribute that is not read";
+            let remark = Remark::new(key, Some(&name), why);
+            self.left_out.push(remark.on(body.line()));
+        }
         self.children(body, index, &Isometry3::identity(), class, depth)
+    }
+
+    /// Notes what is wrong with a part of a body.
+    fn fault(&mut self, body: usize, part: FaultyPart, error: &Error) {
+        self.faults.push(Fault::new(body, part, error));
     }
 
     fn pose(&self, element: Element) -> Result<Isometry3<f64>> {
@@ -182,69 +236,5 @@ impl Reader<'_> {
             .orientation(&Attributes::own(element))?
             .unwrap_or_default();
         Ok(Isometry3::from_parts(Translation3::from(pos), turn))
-    }
-
-    fn joint(&mut self, element: Element, class: Option<&str>, body: usize) -> Result<TreeJoint> {
-        let name = element.text("name");
-        let name = name.map_or(
-            format!("joint_of_{}", self.bodies[body].name),
-            str::to_string,
-        );
-        if element.tag() == "freejoint" {
-            return Ok(TreeJoint::new(name, JointMotion::Free, Vector3::x()));
-        }
-        let own = self.defaults.attributes(element, class)?;
-        let motion = match own.text("type").unwrap_or("hinge") {
-            "hinge" => JointMotion::Hinge,
-            "slide" => JointMotion::Slide,
-            "ball" | "free" => JointMotion::Free,
-            other => {
-                let what = format!("a joint of type \"{other}\"");
-                return Err(element.wrong(what, "hinge, slide, ball or free"));
-            }
-        };
-        let axis = own.vector("axis")?.unwrap_or(Vector3::z());
-        if axis.norm() < 1e-9 {
-            return Err(element.wrong("an axis of length 0", "give the axis a direction"));
-        }
-        let number = |key: &str| -> Result<f64> {
-            Ok(own
-                .numbers(key)?
-                .and_then(|v| v.first().copied())
-                .unwrap_or(0.0))
-        };
-        // Of a slide it is metres, whatever the unit of angles.
-        let place = |value: f64| match motion {
-            JointMotion::Slide => value,
-            _ => self.compiler.rad(value),
-        };
-        let angle = |key: &str| -> Result<f64> { Ok(place(number(key)?)) };
-        let mut joint = TreeJoint::new(name, motion, axis.normalize());
-        joint.anchor_m = Point3::from(own.vector("pos")?.unwrap_or_default());
-        joint.reference_rad = angle("ref")?;
-        joint.spring_rest_rad = angle("springref")?;
-        joint.stiffness_nm = number("stiffness")?;
-        joint.damping_nm_s = number("damping")?;
-        joint.friction_nm = number("frictionloss")?;
-        joint.armature_kg_m2 = number("armature")?;
-        let limited = own.text("limited").unwrap_or("auto");
-        if let Some([low, high]) = own.numbers("range")?.as_deref() {
-            let on = limited == "true" || (limited == "auto" && self.compiler.autolimits);
-            let range = (place(*low), place(*high));
-            joint.range_rad = on.then_some(range);
-        }
-        if own
-            .numbers("springdamper")?
-            .is_some_and(|v| v.iter().any(|v| *v != 0.0))
-        {
-            return Err(element.wrong("springdamper is not read", FLATTEN));
-        }
-        let more = |key: &str| own.numbers(key).map(|v| v.is_some_and(|v| v.len() > 1));
-        if more("stiffness")? || more("damping")? {
-            let why = "only its first, linear coefficient is taken";
-            self.left_out
-                .push(LeftOut::new("polynomial", Some(&joint.name), why));
-        }
-        Ok(joint)
     }
 }

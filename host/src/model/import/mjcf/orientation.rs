@@ -14,6 +14,14 @@ pub(super) struct Compiler {
     pub autolimits: bool,
     /// Whether masses come from shapes: always, never, or where none is given.
     pub from_shapes: Option<bool>,
+    /// Lowest and highest group of shapes that have mass.
+    pub groups: Option<(f64, f64)>,
+    /// No body has less mass, kg.
+    pub least_kg: f64,
+    /// No body has a lower principal moment, kg m^2.
+    pub least_kg_m2: f64,
+    /// Whether moments against the triangle inequality become their mean.
+    pub balances: bool,
 }
 
 impl Compiler {
@@ -25,22 +33,20 @@ impl Compiler {
             euler: ['x', 'y', 'z'],
             autolimits: true,
             from_shapes: None,
+            groups: None,
+            least_kg: 0.0,
+            least_kg_m2: 0.0,
+            balances: false,
         };
         for element in root.all("compiler") {
-            let is = |key: &str, value: &str| element.text(key) == Some(value);
-            let changes = is("coordinate", "global")
-                || is("balanceinertia", "true")
-                || ["boundmass", "boundinertia"]
-                    .iter()
-                    .any(|key| element.text(key).is_some_and(|v| v.trim() != "0"))
-                || element
-                    .number("settotalmass")?
-                    .is_some_and(|mass| mass > 0.0)
-                || element.text("inertiagrouprange").is_some();
-            if changes {
+            let scales = element
+                .number("settotalmass")?
+                .is_some_and(|mass| mass > 0.0);
+            if element.text("coordinate") == Some("global") || scales {
                 let what = "<compiler> changes masses or frames in a way that is not read";
                 return Err(element.wrong(what, super::FLATTEN));
             }
+            compiler.masses(element)?;
             match element.text("angle") {
                 Some("radian") => compiler.degrees = false,
                 Some("degree") => compiler.degrees = true,
@@ -67,6 +73,32 @@ impl Compiler {
             };
         }
         Ok(compiler)
+    }
+
+    /// What it says of masses.
+    fn masses(&mut self, element: Element) -> Result<()> {
+        self.least_kg = element.number("boundmass")?.unwrap_or(self.least_kg);
+        let least = element.number("boundinertia")?;
+        self.least_kg_m2 = least.unwrap_or(self.least_kg_m2);
+        if let Some(text) = element.text("balanceinertia") {
+            self.balances = text == "true";
+        }
+        match element.numbers("inertiagrouprange")?.as_deref() {
+            None => Ok(()),
+            Some([low, high]) => {
+                self.groups = Some((*low, *high));
+                Ok(())
+            }
+            Some(_) => Err(element.wrong("inertiagrouprange has two numbers", "write 0 5")),
+        }
+    }
+
+    /// Whether a range limits, by the attribute that says so.
+    pub fn limits(&self, own: &Attributes, key: &str) -> bool {
+        match own.text(key).unwrap_or("auto") {
+            "auto" => self.autolimits,
+            said => said == "true",
+        }
     }
 
     /// An angle of the file in rad.

@@ -1,0 +1,137 @@
+//! `init`: a model started from a log.
+
+use crate::errors::{exception, usage};
+use crate::logs::{FrameFile, is_frame, request};
+use crate::model::Model;
+use crate::value::plain;
+use handstand::log::RawLog;
+use handstand::log::init::Draft as LogDraft;
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// A model started from a log, and what was guessed.
+#[pyclass(frozen, module = "handstand")]
+#[derive(Debug, Clone)]
+pub struct Draft {
+    model: Model,
+    guesses: Value,
+}
+
+/// Starts a model from a log: columns and units are guessed from the header's names and the
+/// values' ranges.
+///
+/// Parameters
+/// ----------
+/// log : file name, path or DataFrame
+/// name : str
+///     For reports.
+/// drive : "passive", "torque", "duty", "position" or "speed"
+///     What drives the joints that have an input.
+/// angle_zero : "hanging", "upright" or "horizontal"
+///     Where the log's angles are zero.
+/// angles : "relative" or "absolute"
+///     What they are measured from: the link before, or the world.
+/// length_m, mass_kg : list of float
+///     Length of each link from joint to joint, m, and its mass, kg, from the base outwards.
+///
+/// Returns
+/// -------
+/// Draft
+#[pyfunction]
+#[pyo3(signature = (log, *, name=None, drive=None, angle_zero=None, angles=None, length_m=None,
+                    mass_kg=None))]
+pub fn init(
+    log: &Bound<'_, PyAny>,
+    name: Option<String>,
+    drive: Option<String>,
+    angle_zero: Option<String>,
+    angles: Option<String>,
+    length_m: Option<Vec<f64>>,
+    mass_kg: Option<Vec<f64>>,
+) -> PyResult<Draft> {
+    let frame = match is_frame(log)? {
+        true => Some(FrameFile::of(log)?),
+        false => None,
+    };
+    let asked = match &frame {
+        Some(file) => file.request(),
+        None => request(log)?,
+    };
+    let told = |error| match &frame {
+        Some(_) => exception(FrameFile::named(error)),
+        None => exception(error),
+    };
+    let log = RawLog::read_request(&asked).map_err(told)?;
+    let mut draft = LogDraft::of(&log, &asked.name(), drive.as_deref()).map_err(told)?;
+    if let Some(drive) = drive.filter(|drive| !draft.has_input_of(drive)) {
+        return Err(usage(
+            format!(
+                "no column that changes is named as what a drive of kind {drive:?} is told: {}",
+                log.names.join(", ")
+            ),
+            "rename the input's column, such as tau_nm, duty, goal_rad, goal_speed_rad_s, or leave \
+             `drive` out",
+        ));
+    }
+    for (what, answer) in [
+        ("name", name),
+        ("angle zero", angle_zero),
+        ("angles", angles),
+    ] {
+        if let Some(answer) = answer {
+            draft.set(what, &answer).map_err(exception)?;
+        }
+    }
+    for (what, values) in [("length", length_m), ("mass", mass_kg)] {
+        if let Some(values) = values {
+            draft.set_links(what, &values).map_err(exception)?;
+        }
+    }
+    let text = draft.toml().map_err(exception)?;
+    Ok(Draft {
+        model: Model::of(text, PathBuf::from("model.toml")).map_err(exception)?,
+        guesses: json!(draft.guesses),
+    })
+}
+
+#[pymethods]
+impl Draft {
+    /// The model.
+    #[getter]
+    fn model(&self) -> Model {
+        self.model.clone()
+    }
+
+    /// What was guessed: each with `what`, `guess` and `why`.
+    #[getter]
+    fn guesses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.guesses)
+    }
+
+    /// Everything, with the keys of `handstand init --json`.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let text = &self.model.text;
+        plain(
+            py,
+            &json!({ "file": null, "text": text, "guesses": self.guesses }),
+        )
+    }
+
+    fn __str__(&self) -> String {
+        let all = self.guesses.as_array().into_iter().flatten();
+        let line = |own: &Value| {
+            let word = |key: &str| own[key].as_str().unwrap_or_default().to_string();
+            format!("{}: {} ({})", word("what"), word("guess"), word("why"))
+        };
+        all.map(line).collect::<Vec<_>>().join("\n")
+    }
+
+    fn __repr__(&self) -> String {
+        let guesses = self.guesses.as_array().map_or(0, Vec::len);
+        format!(
+            "<Draft {:?}: guessed {guesses} things>",
+            self.model.inner.name
+        )
+    }
+}
