@@ -114,7 +114,7 @@ fn log(fact: &LogFacts) -> Markup {
                 (log.file)
                 @if let Some((first, last)) = log.rows { ", rows " (first) " to " (last) }
                 @if let Err((found, remedy)) = &fact.content {
-                    p.bad.found { (found) }
+                    p.bad.unreadable { (found) }
                     p.note { (remedy) @if !remedy.is_empty() { ". " } "It is left out." }
                 }
             }
