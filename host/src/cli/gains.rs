@@ -23,7 +23,7 @@
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk};
 use handstand::model::Model;
-use handstand::report::gains_json;
+use handstand::report::{gains_json, verification_text};
 use handstand::study::{left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, DesignError};
@@ -31,7 +31,6 @@ use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
 
 mod request;
-mod verification;
 
 pub(super) use request::requested;
 use request::{Pose, pose};
@@ -141,7 +140,7 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
         format!(
             "{}\n{}",
             design.trim_end(),
-            verification::text(&verified, whole.slides())
+            verification_text(&verified, whole.slides())
         )
     })?;
     write(args, &design, &made, &data, talk)?;

@@ -10,6 +10,10 @@
 //! http://127.0.0.1:40123/enter?token=...
 //! ```
 //!
+//! Files may stand in any order: what ends in `.toml`, `.urdf` or `.xml` is the model, what a log ends
+//! in is a log. Without a model the lab leads to making one. No browser is opened unless `--open`
+//! asks for it.
+//!
 //! With `--robot PORT` the Robot page records and balances the robot at that port, live: charts and
 //! the robot's shape follow the samples. Torque comes on after a press and the questions that
 //! `balance` asks; it goes off when stop is pressed, when that page goes away and when the lab
@@ -36,20 +40,21 @@ use std::sync::Arc;
 /// Measure, compare, diagnose and improve a model in a browser.
 #[derive(Debug, clap::Args)]
 pub struct LabArgs {
-    /// Model file to begin with
-    model: Option<PathBuf>,
-    /// Logs to begin with
-    #[arg(value_name = "LOG", value_parser = input::log)]
-    logs: Vec<LogRequest>,
+    /// Model (TOML, URDF, MJCF) and logs to begin with; without a model one is made of the logs
+    #[arg(value_name = "MODEL|LOG", value_parser = input::log)]
+    files: Vec<LogRequest>,
     /// Folder that keeps the sessions [default: a folder of the user's state]
     #[arg(long, value_name = "DIR")]
     session: Option<PathBuf>,
     /// Port of this machine's loopback interface [default: a free one]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     port: u16,
-    /// Open the address in the browser
+    /// Open the address in the browser; none is opened without
     #[arg(long)]
     open: bool,
+    /// What is the case anyway
+    #[arg(long, hide = true, alias = "no-open", conflicts_with = "open")]
+    no_browser: bool,
     #[command(flatten, next_help_heading = "Robot at a port")]
     robot: LabRobotArgs,
 }
@@ -92,11 +97,11 @@ pub fn run(args: &LabArgs, talk: &Talk) -> Result<ExitStatus> {
         Some(folder) => folder.clone(),
         None => state_folder()?,
     };
+    if args.no_browser {
+        talk.say("no browser is opened unless --open is given: --no-browser can be left out");
+    }
     let lab = Lab::bind(LabOptions {
-        given: Given {
-            model: args.model.clone(),
-            logs: args.logs.clone(),
-        },
+        given: Given::of(&args.files)?,
         folder,
         port: args.port,
         robot: args.robot.access()?,

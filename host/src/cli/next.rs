@@ -25,8 +25,8 @@ use super::{ExitStatus, Talk};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose_logs};
 use handstand::experiment::{
-    Criterion, ExperimentLimits, ExperimentProposal, FollowUp, ProposeOptions, propose,
-    propose_values,
+    Criterion, ExperimentLimits, ExperimentProposal, FollowUp, ProposeOptions, inputs_alone,
+    is_replayable, propose, propose_values,
 };
 use handstand::fitting::{Horizon, effect_ids, free_parameters};
 use handstand::log::{LogRequest, LogSet, to_csv};
@@ -218,30 +218,4 @@ impl NextArgs {
         limits.torque_nm = self.torque;
         Ok(limits)
     }
-}
-
-/// The log's columns of time, inputs, supply and torque, without those of what is measured.
-fn inputs_alone(model: &Model) -> handstand::model::LogColumns {
-    let mut columns = model.log.clone();
-    for joint in &mut columns.joints {
-        (joint.position, joint.velocity) = (None, None);
-    }
-    columns.torque_on = Some(columns.torque_on.unwrap_or_else(|| "torque_on".to_string()));
-    columns
-}
-
-/// Whether `replay` plays the model's input columns: goals of servos, in rad.
-fn is_replayable(model: &Model) -> bool {
-    let names = model.driven_joints().into_iter().flat_map(|joint| {
-        let input = model.log.joints[joint].input.as_ref();
-        input.map_or(&[][..], |input| input.columns())
-    });
-    let is_goal = |name: &str| {
-        let number = name
-            .strip_prefix("goal")
-            .and_then(|rest| rest.strip_suffix("_rad"));
-        number.is_some_and(|number| number.parse::<u8>().is_ok())
-    };
-    let mut names = names.map(|column| column.name.as_str()).peekable();
-    names.peek().is_some() && names.all(is_goal) && model.log.time.name == "time_s"
 }

@@ -14,6 +14,7 @@ pub mod excite;
 mod follow_up;
 mod inputs;
 mod limits;
+mod motion_file;
 mod prediction;
 mod proposal;
 mod propose;
@@ -27,6 +28,7 @@ mod tests;
 pub use condition::Condition;
 pub use follow_up::FollowUp;
 pub use limits::ExperimentLimits;
+pub use motion_file::{inputs_alone, is_replayable};
 pub use proposal::{
     ExperimentProposal, MeasuredValue, ProposedExperiment, RivalName, Separation, TightenedValue,
 };

@@ -15,6 +15,9 @@ const LIVE: &str = include_str!("assets/live.js");
 const LAB: &str = include_str!("assets/lab.js");
 const WHAT_IF: &str = include_str!("assets/what_if.js");
 const GAINS: &str = include_str!("assets/gains.js");
+const RAW: &str = include_str!("assets/raw.js");
+const COMPARE: &str = include_str!("assets/compare.js");
+const RESIDUAL: &str = include_str!("assets/residual.js");
 const MODEL: &str = include_str!("assets/model.js");
 
 /// A script or a style sheet.
@@ -32,6 +35,9 @@ pub(super) async fn asset(Path(name): Path<String>) -> Answer {
         "lab.js" => (script, LAB.into()),
         "what_if.js" => (script, WHAT_IF.into()),
         "gains.js" => (script, GAINS.into()),
+        "raw.js" => (script, RAW.into()),
+        "compare.js" => (script, COMPARE.into()),
+        "residual.js" => (script, RESIDUAL.into()),
         "model.js" => (script, MODEL.into()),
         _ => return Err(LabError::NotFound("file")),
     };

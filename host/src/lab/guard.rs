@@ -1,6 +1,6 @@
 //! Who may ask: a browser on this machine that was given the token, on a page of this server.
 
-use super::reply::refusal;
+use super::reply::{as_page, refusal};
 use super::server::LabState;
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
@@ -44,9 +44,15 @@ pub(super) async fn guard(
     request: Request,
     next: Next,
 ) -> Response {
-    let open = request.uri().path() == "/enter";
+    // Style and scripts are no secrets, and a refusal needs its style.
+    let path = request.uri().path();
+    let open = path == "/enter" || path.starts_with("/assets/");
+    let accept = request.headers().get(header::ACCEPT);
+    let to_page = request.method() == Method::GET
+        && accept.is_some_and(|kinds| kinds.to_str().is_ok_and(|it| it.contains("text/html")));
     let mut response = match refused(&lab, request.method(), request.headers(), open) {
         Some((status, why)) => refusal(status, why),
+        None if to_page => as_page(next.run(request).await),
         None => next.run(request).await,
     };
     let headers = response.headers_mut();

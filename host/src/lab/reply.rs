@@ -5,7 +5,7 @@ use crate::error::Error;
 use axum::body::Body;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use maud::{Markup, html};
+use maud::Markup;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -61,8 +61,44 @@ impl IntoResponse for LabError {
     fn into_response(self) -> Response {
         let (found, remedy) = self.words();
         let data = json!({ "error": found, "remedy": remedy });
-        data_reply(self.status(), &data)
+        let mut response = data_reply(self.status(), &data);
+        response.extensions_mut().insert(Said { found, remedy });
+        response
     }
+}
+
+/// What a refusal says, for the page that a browser shows.
+#[derive(Debug, Clone)]
+struct Said {
+    found: String,
+    remedy: String,
+}
+
+/// A refusal as a page, for a browser that goes to an address; other answers stay as they are.
+pub(super) fn as_page(response: Response) -> Response {
+    let status = response.status();
+    if !(status.is_client_error() || status.is_server_error()) {
+        return response;
+    }
+    let found = match response.extensions().get::<Said>() {
+        Some(said) => said.clone(),
+        None => Said {
+            found: match status {
+                StatusCode::BAD_REQUEST => "this is no address of the lab".into(),
+                _ => "this was not carried out".into(),
+            },
+            remedy: String::new(),
+        },
+    };
+    let title = match status {
+        StatusCode::NOT_FOUND | StatusCode::BAD_REQUEST => "There is nothing here",
+        _ => "This cannot be shown",
+    };
+    (
+        status,
+        page(frame::refused(title, &[&found.found, &found.remedy], true)),
+    )
+        .into_response()
 }
 
 /// A page.
@@ -102,6 +138,5 @@ pub(super) fn go(path: &str) -> Response {
 
 /// Says why nobody is let in.
 pub(super) fn refusal(status: StatusCode, why: &str) -> Response {
-    let body = frame::bare("Refused", &html! { main { h1 { "Refused" } p { (why) } } });
-    (status, page(body)).into_response()
+    (status, page(frame::refused("Refused", &[why], false))).into_response()
 }

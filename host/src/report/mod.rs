@@ -23,6 +23,7 @@ mod signatures;
 mod tests;
 mod text;
 mod traces;
+mod verification;
 mod waterfall;
 mod words;
 
@@ -31,11 +32,13 @@ pub use json::{diagnosis_json, gains_json, json};
 pub use log_check::{log_check_json, log_check_text};
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
+pub(crate) use page::html_with;
 pub use proposal::{next_steps, proposal_text};
 pub use raw_plot::{raw_html, raw_text};
 pub use refitted::{refitted_json, refitted_text};
 pub(crate) use signatures::chart as signature_chart;
 pub use text::diagnosis_text;
+pub use verification::verification_text;
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;

@@ -26,6 +26,11 @@ pub(crate) struct Section {
 
 /// A self-contained page: no scripts, fonts or pictures from elsewhere.
 pub fn html(report: &Report) -> String {
+    html_with(report, Vec::new())
+}
+
+/// The same with sections of the caller's above the others.
+pub(crate) fn html_with(report: &Report, above: Vec<Section>) -> String {
     let parts: [fn(&Report) -> Option<Section>; 10] = [
         traces::section,
         closed_loop::section,
@@ -38,7 +43,8 @@ pub fn html(report: &Report) -> String {
         provenance::section,
         provenance::terms,
     ];
-    let sections: Vec<Section> = parts.iter().filter_map(|part| part(report)).collect();
+    let own = parts.iter().filter_map(|part| part(report));
+    let sections: Vec<Section> = above.into_iter().chain(own).collect();
     document(&report.title, &headline::header(report), &sections)
 }
 

@@ -183,6 +183,7 @@ export class ChartGroup {
     const width = Math.min(Math.max(to - from, whole * 1e-4), whole);
     from = Math.min(Math.max(from, first), last - width);
     this.view = [from, from + width];
+    this.onView?.();
     this.draw();
   }
   setCursor(time) {
@@ -206,6 +207,22 @@ export class ChartGroup {
     });
   }
 
+  // The scale follows what was measured: what runs away from it leaves the picture. `anchor` holds
+  // the scale about its own values, `reach` about zero.
+  held(panel, low, high, begin, end) {
+    const held = panel.anchor ?? panel.reach;
+    if (!held) return [low, high];
+    let least = Infinity, most = -Infinity;
+    for (let k = begin; k < end; k++) {
+      if (held[k] < least) least = held[k];
+      if (held[k] > most) most = held[k];
+    }
+    const span = Math.max(most - least, 1e-6);
+    if (!(span < Infinity)) return [low, high];
+    const [bottom, top] = panel.anchor ? [least - span, most + span] : [-2 * span, 2 * span];
+    return [Math.max(low, bottom), Math.min(high, top)];
+  }
+
   drawPanel({ panel, canvas, readout }) {
     const [pen, width, height] = prepare(canvas);
     const { time, view: [from, to] } = this, scale = panel.scale ?? 1;
@@ -221,6 +238,7 @@ export class ChartGroup {
         if (v > high && v < 1e12) high = v;
       }
     }
+    [low, high] = this.held(panel, low, high, begin, end);
     const band = 1.3 * (panel.band ?? NaN);
     if (band > 0) [low, high] = [Math.min(low, -band), Math.max(high, band)];
     if (!(low <= high)) { low = 0; high = 1; }

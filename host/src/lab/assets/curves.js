@@ -4,7 +4,8 @@ export const problem = async (answer) => {
   const text = await answer.text();
   try {
     const said = JSON.parse(text);
-    return new Error(said.remedy ? `${said.error}. ${said.remedy}.` : `${said.error}.`);
+    const remedy = said.remedy && said.remedy[0].toUpperCase() + said.remedy.slice(1);
+    return new Error(remedy ? `${said.error}. ${remedy}.` : `${said.error}.`);
   } catch {
     return new Error(text.slice(0, 300) || `The server answered ${answer.status}.`);
   }

@@ -13,9 +13,9 @@ const value = (name) => {
   const raw = Number($(name).value);
   return logs[name] ? Number((10 ** raw).toPrecision(2)) : Number(raw.toFixed(4));
 };
-const asked = (region = false) => ({
+const asked = () => ({
   q: value("q"), r: value("r"), ts_s: value("ts_s"),
-  delay_s: $("own-delay").checked ? null : value("delay_s"), region,
+  delay_s: $("own-delay").checked ? null : value("delay_s"),
 });
 let poles = [], wanted = false, busy = false;
 
@@ -55,13 +55,6 @@ const show = (said) => {
   }
   if (said.omitted.length) lines.push(["Left out of the design, kept in the response",
     said.omitted.join(", ")]);
-  if (said.region_rad !== null) {
-    lines.push(["Starts that 95 % are stabilised from",
-      `${said.region_open ? "at least" : "within"} ${
-        (said.region_rad * 180 / Math.PI).toFixed(2)}°`]);
-    lines.push(["Stabilised from half a degree", said.stabilised ? "yes" : "no"]);
-    lines.push(["It stays without control, too", said.stays_uncontrolled ? "yes" : "no"]);
-  }
   $("figures").replaceChildren(table(["Quantity", "Value"], lines));
   $("gain").replaceChildren(table(["Input", ...said.states], said.k.map((row, i) => [said.inputs[i],
     ...row.map((v) => v.toPrecision(4))])));
@@ -71,7 +64,8 @@ const show = (said) => {
     name: name(i), tone: tones[i % tones.length], values: Float32Array.from(row) }));
   group.time = null;
   group.show(time, [
-    { title: "Angles from the pose", unit: "mrad", scale: 1e3, curves: of(said.response.angle_rad,
+    { title: "Angles from the pose", unit: said.degrees ? "deg" : "mrad", scale: said.degrees ?
+      180 / Math.PI : 1e3, curves: of(said.response.angle_rad,
       (i) => `joint ${i + 1}`) },
     { title: "Commands", unit: "", small: true, curves: of(said.response.command, (i) =>
       said.inputs[i]) },
@@ -89,8 +83,32 @@ const refuse = (error) => {
   group.show(new Float32Array(), []);
   for (const link of document.querySelectorAll("[data-file]")) link.removeAttribute("href");
 };
-const ask = async (region) => {
-  wanted = { region };
+// What the simulated loop does takes seconds: it is asked when the sliders have rested.
+let rest = 0, verifying = false, stale = false;
+const verify = async () => {
+  if (verifying) { stale = true; return; }
+  verifying = true;
+  const place = $("verified");
+  place.replaceChildren(element("p", { className: "note", textContent: "Simulating the loop …" }));
+  try {
+    const said = await send("verified", asked());
+    if (!stale) {
+      const proves = said.stabilised && !said.stays_uncontrolled;
+      place.replaceChildren(...said.lines.map((textContent, i) => element("p", { textContent,
+        className: i ? "" : proves ? "good" : "bad" })));
+      place.dataset.answered = String(Math.round(performance.now()));
+    }
+  } catch (error) {
+    if (!stale) place.replaceChildren(element("p", { className: "bad", textContent:
+      error.message }));
+  }
+  verifying = false;
+  if (stale) { stale = false; verify(); }
+};
+const ask = async () => {
+  wanted = true;
+  clearTimeout(rest);
+  rest = setTimeout(verify, 700);
   for (const name of Object.keys(shown)) $(`${name}-shown`).textContent = value(name);
   const query = asked();
   const text = new URLSearchParams({ q: query.q, r: query.r, ts_s: query.ts_s,
@@ -100,16 +118,13 @@ const ask = async (region) => {
   if (busy) return;
   busy = true;
   while (wanted) {
-    const next = wanted;
-    wanted = null;
-    try { show(await send("gains", asked(next.region))); say(""); } catch (error) {
-      refuse(error); }
+    wanted = false;
+    try { show(await send("gains", asked())); say(""); } catch (error) { refuse(error); }
   }
   busy = false;
 };
-for (const name of Object.keys(shown)) $(name).addEventListener("input", () => ask(false));
+for (const name of Object.keys(shown)) $(name).addEventListener("input", ask);
 $("own-delay").addEventListener("change", () => { $("delay_s").disabled = $("own-delay").checked;
-  ask(false); });
-$("find-region").addEventListener("click", () => ask(true));
+  ask(); });
 onLook(drawPoles);
-ask(false);
+ask();

@@ -1,11 +1,9 @@
 // What every page does: forms that say what went wrong, progress, files, curves.
-import { ChartGroup } from "./chart.js";
-import { arrays, element, problem } from "./curves.js";
-import { onLook, scatter } from "./paint.js";
+import { problem } from "./curves.js";
 
-const base = `/s/${document.body.dataset.session}`;
-const $ = (selector, within = document) => within.querySelector(selector);
-const $$ = (selector, within = document) => [...within.querySelectorAll(selector)];
+export const base = `/s/${document.body.dataset.session}`;
+export const $ = (selector, within = document) => within.querySelector(selector);
+export const $$ = (selector, within = document) => [...within.querySelectorAll(selector)];
 
 export const say = (text, bad = true) => {
   const message = $("#message");
@@ -13,9 +11,40 @@ export const say = (text, bad = true) => {
   message.textContent = text;
   if (text && bad) message.scrollIntoView({ block: "nearest" });
 };
+// What is sent is meant for the model that this page shows: another tab may have gone on.
+export const meant = () => ({ "content-type": "application/json",
+  "handstand-model": document.body.dataset.model ?? "" });
+// Marks the field or the line that an error names: `mass_kg = -1`, `model.toml:11:11`.
+export const mark = (error, form) => {
+  for (const field of form?.querySelectorAll("[aria-invalid]") ?? [])
+    field.removeAttribute("aria-invalid");
+  if (!error || !form) return;
+  const text = form.querySelector("textarea");
+  const [, line, column] = /:(\d+):(\d+)/.exec(error.message) ?? [];
+  if (text && line) {
+    const before = text.value.split("\n").slice(0, line - 1).join("\n").length + (line > 1 ? 1 : 0);
+    const end = text.value.indexOf("\n", before);
+    text.setAttribute("aria-invalid", "true");
+    text.focus();
+    text.setSelectionRange(before + Number(column) - 1, end < 0 ? text.value.length : end);
+    text.scrollTop = text.scrollHeight * (line - 3) / text.value.split("\n").length;
+    return;
+  }
+  const named = [...form.querySelectorAll("[name], [data-field]")].filter((field) => {
+    const name = field.dataset.field ?? field.name;
+    return name && new RegExp(`\\b${name}\\b`).test(error.message);
+  });
+  // Of several joints' fields the one whose value the error repeats.
+  const said = named.filter((field) => field.value !== "" &&
+    new RegExp(`= ?${field.value.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}(\\b|$|[ ,])`)
+      .test(error.message));
+  const marked = said.length ? said : named.slice(0, 1);
+  for (const field of marked) field.setAttribute("aria-invalid", "true");
+  marked[0]?.focus();
+};
 export const send = async (path, data = {}) => {
   const answer = await fetch(path.startsWith("/") ? path : `${base}/${path}`, {
-    method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(data),
+    method: "POST", headers: meant(), body: JSON.stringify(data),
   });
   if (!answer.ok) throw await problem(answer);
   return answer.json();
@@ -25,6 +54,10 @@ export const go = (said) => {
   sessionStorage.setItem("scroll", JSON.stringify([said.go, scrollY]));
   if (location.pathname === said.go) location.reload(); else location.assign(said.go);
 };
+// What the page before could not say, for this one took its place.
+const unsaid = sessionStorage.getItem("said");
+sessionStorage.removeItem("said");
+if (unsaid) say(unsaid);
 const kept = JSON.parse(sessionStorage.getItem("scroll") ?? "[]");
 sessionStorage.removeItem("scroll");
 if (kept[0] === location.pathname) scrollTo(0, kept[1]);
@@ -38,6 +71,7 @@ const fill = async (selector, path, otherwise) => {
 };
 fill("#error-wanted", "error", "Error: the logs cannot be read by this model").catch(() => {});
 fill("#horizons-wanted", "horizons", "It came to no end.").catch(() => {});
+fill("#whole-wanted", "whole", "It came to no end.").catch(() => {});
 fill("#findings-wanted", "findings", "The check came to no end.").catch(() => {});
 
 // A form sends its fields as JSON; `data-number` ones as numbers.
@@ -52,13 +86,18 @@ for (const form of $$("form[data-send]")) {
         Number(field.value);
       else data[field.name] = field.value;
     }
+    if (form.dataset.names !== undefined) {
+      data.names = $$("[data-name]:checked", form).map((box) => box.dataset.name).join("+");
+      if (!data.names) { say("Tick at least one value."); return; }
+    }
     if (event.submitter?.name) data[event.submitter.name] = event.submitter.value;
     say("");
+    mark(null, form);
     try {
       const said = await send(form.dataset.send, data);
       if (form.dataset.said) say(form.dataset.said, false);
       if (said.begun) watch(); else go(said);
-    } catch (error) { say(error.message); }
+    } catch (error) { say(error.message); mark(error, form); }
   });
 }
 for (const field of $$("[data-submit]")) field.addEventListener("change", () =>
@@ -98,18 +137,22 @@ $("#stop")?.addEventListener("click", () => send("stop").catch((error) => say(er
 const MOST = Number($("#files")?.dataset.most ?? 0);
 const bring = async (files) => {
   let last = null;
+  const refused = [];
   for (const file of files) {
     if (file.size > MOST) {
       const [has, most] = [file.size, MOST].map((bytes) => Math.round(bytes / 2 ** 20));
-      say(`${file.name} has ${has} MiB; a log may have up to ${most} MiB.`);
+      say(`${file.name} has ${has} MiB; a file may have up to ${most} MiB.`);
       return;
     }
     say(`Bringing ${file.name} …`, false);
     const answer = await fetch(`${base}/upload?name=${encodeURIComponent(file.name)}`, {
       method: "POST", body: file });
-    if (!answer.ok) { say((await problem(answer)).message); return; }
+    if (!answer.ok) { refused.push((await problem(answer)).message); continue; }
     last = await answer.json();
+    say("");
   }
+  if (refused.length && last) sessionStorage.setItem("said", refused.join(" "));
+  else if (refused.length) say(refused.join(" "));
   if (last) go(last);
 };
 const drop = $("#drop");
@@ -135,32 +178,13 @@ for (const button of $$("[data-copy]")) {
   });
 }
 
-// A log's columns as they stand.
-const raw = $("#raw");
-if (raw) {
-  const group = new ChartGroup(raw);
-  const TONES = ["blue", "orange", "green", "ink", "grey"];
-  const file = $("#raw-file");
-  const show = async () => {
-    const { meta, data } = await arrays(`${base}/raw?file=${encodeURIComponent(file.value)}`);
-    const panels = meta.names.map((name, i) => ({
-      title: name, unit: "", small: true,
-      curves: [{ name: "", tone: TONES[i % TONES.length], values: data[`column_${i}`] }],
-    })).filter((_, i) => i !== meta.time);
-    group.panels = [];
-    group.time = null;
-    group.show(data.time, panels);
-  };
-  file.addEventListener("change", () => show().catch((error) => say(error.message)));
-  show().catch((error) => say(error.message));
-}
-
-// Panels of measured and predicted angles, residuals below.
+// Panels of measured and predicted angles, residuals below. A model that runs away does not press
+// the others flat: `anchor` is what the scale follows.
 export const panelsOf = ({ meta, data }, names) => {
   const panels = [];
   for (let joint = 0; joint < meta.joints; joint++) {
     const measured = data[`measured_${joint}`], predicted = data[`predicted_${joint}`], other =
-      data[`other_${joint}`];
+      data[`other_${joint}`], shown = meta.shown[joint];
     const left = (values) => values && measured.map((angle, k) => angle - values[k]);
     const angles = [{ name: "measured", tone: "ink", values: measured, wide: true }, {
       name: names[0], tone: names[2] ?? "orange", values: predicted }];
@@ -169,132 +193,29 @@ export const panelsOf = ({ meta, data }, names) => {
       angles.push({ name: names[1], tone: names[3] ?? "blue", values: other });
       residuals.push({ name: names[1], tone: names[3] ?? "blue", values: left(other) });
     }
-    const quantity = meta.units[joint] === "rad/s" ? "Rate" : "Angle";
+    const quantity = meta.rates[joint] ? "Rate" : "Angle";
     const title = meta.joints > 1 ? `${quantity} of joint ${joint + 1}` : quantity;
-    panels.push({ title, unit: meta.units[joint], joint, curves: angles });
+    panels.push({ title, unit: shown.unit, scale: shown.per_si, joint, anchor: measured, curves:
+      angles });
     panels.push({ title: meta.joints > 1 ? `Residual of joint ${joint + 1}` : "Residual", unit:
-      `m${meta.units[joint]}`, small: true, scale: 1e3, band: meta.floor[joint], joint, curves:
-      residuals });
+      shown.error_unit, small: true, scale: shown.error_per_si, band: meta.floor[joint], joint,
+      reach: measured, curves: residuals });
     const input = data[`input_${joint}`];
     if (input) panels.push({ title:
       `Input${meta.joints > 1 ? ` of joint ${joint + 1}` : ""}: ${meta.inputs[joint].name}`, unit:
-      meta.inputs[joint].unit.replace(/^1$/, ""), small: true, curves: [{
-      name: "input", tone: "grey", values: input }] });
+      meta.inputs[joint].unit.replace(/^1$/, ""), scale: meta.inputs[joint].per_si, small: true,
+      curves: [{ name: "input", tone: "violet", values: input }] });
   }
   return panels;
 };
-export const milli = (value, unit) => {
-  const thousandths = 1e3 * value;
-  const large = Math.abs(thousandths) >= 100;
-  const shown = large ? Math.round(thousandths) : Number(thousandths.toPrecision(3));
-  return `${shown} m${unit}`;
+// An error in the unit in which people read it, `error` of the answers.
+export const inWords = (value, { error_unit, error_per_si }) => {
+  const size = error_per_si * value;
+  const large = Math.abs(size) >= 100;
+  return `${large ? Math.round(size) : Number(size.toPrecision(3))} ${error_unit}`;
 };
 
-// Comparison: the motion, the steps drawn, the windows, the conditions shaded.
-const curves = $("#curves");
-if (curves && curves.dataset.kind !== "what-if") {
-  const group = new ChartGroup(curves);
-  const motion = $("#motion"), other = $("#other"), slider = $("#window"), shown =
-    $("#window-shown");
-  let shades = [], chosen = null, wanted = null, busy = false, rest = 0;
-  const shade = () => {
-    const part = chosen === null ? null : shades[chosen];
-    group.setShade((part?.stretches_s ?? []).map(([from, to]) => ({
-      from, to, joint: part.joint })));
-  };
-  const load = async (horizon, moving) => {
-    const query = new URLSearchParams({ motion: motion.value });
-    if (other?.value) query.set("other", other.value);
-    if (horizon) query.set("horizon", horizon);
-    if (moving) query.set("moving", "true");
-    const answer = await arrays(`${base}/curves?${query}`);
-    const second = other?.selectedOptions[0]?.textContent ?? "";
-    const names = [curves.dataset.name, second, "orange", "blue"];
-    group.show(answer.data.time, panelsOf(answer, names), { marks: answer.meta.restarts_s });
-    $("#shown-about").textContent = moving ? "about " : "";
-    shades = answer.meta.shades;
-    shade();
-    $("#shown-error").textContent = milli(answer.meta.rms, answer.meta.unit);
-    $("#shown-role").textContent = answer.meta.held_out ? "held out" : "fitted";
-    $("#shown-window").textContent = answer.meta.window_s ?
-      `${Number(answer.meta.window_s.toPrecision(3))} s` : "whole motion";
-    curves.dataset.answered = String(Math.round(performance.now()));
-  };
-  // The last wish wins.
-  const ask = async (horizon, moving = false) => {
-    wanted = { horizon, moving };
-    if (busy) return;
-    busy = true;
-    while (wanted) {
-      const next = wanted;
-      wanted = null;
-      try { await load(next.horizon, next.moving); } catch (error) { say(error.message); }
-    }
-    busy = false;
-  };
-  // The slider is logarithmic; its right end means whole motions.
-  const seconds = () => {
-    if (Number(slider.value) > Number(slider.max) - 0.05) return null;
-    return Number((10 ** Number(slider.value)).toPrecision(2));
-  };
-  const tell = () => { const s = seconds(); shown.textContent = s === null ? "whole motions" :
-    `${s} s`; };
-  // While it moves start states are fitted roughly; what it rests on becomes the session's.
-  slider?.addEventListener("input", () => {
-    clearTimeout(rest); tell();
-    ask(String(seconds() ?? "whole"), true);
-  });
-  const keep = async (window) => {
-    try { go(await send("horizon", { window })); } catch (error) { say(error.message); }
-  };
-  slider?.addEventListener("change", () => {
-    const chosen = seconds();
-    clearTimeout(rest);
-    rest = setTimeout(() => keep(chosen === null ? "whole" : { seconds: chosen }), 500);
-  });
-  $("#window-automatic")?.addEventListener("click", () => keep("automatic"));
-  for (const field of [motion, other]) field?.addEventListener("change", () => ask());
-  const conditions = $$("[data-condition]");
-  const scatters = $("#scatters");
-  let dots = null;
-  const drawDots = () => {
-    if (!dots) return;
-    for (const canvas of $$("canvas", scatters)) {
-      const { name, unit } = dots.meta.variables[Number(canvas.dataset.index)];
-      const marked = chosen === null ? null : dots.data[`holds_${chosen}`];
-      scatter(canvas, dots.data[name], dots.data.residual, {
-        band: dots.meta.floor, scale: 1e3, marked,
-        xLabel: unit === "1" ? name : `${name}, ${unit}` });
-    }
-  };
-  const loadDots = async () => {
-    dots = await arrays(`${base}/scatter?joint=${$("#scatter-joint").value}`);
-    scatters.replaceChildren(...dots.meta.variables.map(({ name, unit }, index) => {
-      const canvas = element("canvas", { className: "scatter" });
-      canvas.setAttribute("role", "img");
-      canvas.setAttribute("aria-label", `residual over ${name} in ${unit}`);
-      canvas.dataset.index = index;
-      return element("figure", {}, element("figcaption", {
-        textContent: `Residual, m${dots.meta.unit}, over ${name}` }), canvas);
-    }));
-    drawDots();
-  };
-  if (scatters) {
-    loadDots().catch((error) => say(error.message));
-    $("#scatter-joint").addEventListener("change", () => loadDots().catch((error) =>
-      say(error.message)));
-    onLook(drawDots);
-  }
-  for (const button of conditions) {
-    button.addEventListener("click", () => {
-      const index = Number(button.dataset.condition);
-      chosen = chosen === index ? null : index;
-      for (const each of conditions) each.setAttribute("aria-pressed",
-        String(Number(each.dataset.condition) === chosen));
-      shade();
-      drawDots();
-    });
-  }
-  if (slider) tell();
-  ask();
+if ($("#raw")) import("./raw.js").catch((error) => say(error.message));
+if ($("#curves") && $("#curves").dataset.kind !== "what-if") {
+  import("./compare.js").catch((error) => say(error.message));
 }

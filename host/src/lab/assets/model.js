@@ -1,6 +1,6 @@
 // The form of a new model, drawn as it is typed; and the columns of a log.
 import { element } from "./curves.js";
-import { go, say, send } from "./lab.js";
+import { go, mark, say, send } from "./lab.js";
 
 const form = document.getElementById("new-model");
 const links = document.getElementById("links");
@@ -10,7 +10,18 @@ const FIELDS = [
   ["inertia_kg_m2", "inertia, kg m² (empty: even rod)", ""],
 ];
 const MOTOR = [["gain", "gain, duty per rad or rad/s", 5], ["stall_torque_nm", "stall torque, N m",
-  1.5], ["no_load_speed_rad_s", "no-load speed, rad/s", ""]];
+  1.5], ["no_load_speed_rad_s", "no-load speed, rad/s", 6]];
+const FRICTION = [["viscous_nm_s_rad", "viscous friction, N m s/rad"], ["coulomb_nm",
+  "Coulomb friction, N m"]];
+// Geared servos lose a few hundredths of their stall torque; a torque without a figure gets what the
+// library begins a fit with.
+const friction = (drive, { stall_torque_nm, no_load_speed_rad_s }) => {
+  const round = (value) => Number(value.toPrecision(2));
+  if (drive === "passive") return ["", ""];
+  if (!(stall_torque_nm > 0) || drive === "torque") return [0.01, 0.02];
+  const coulomb = 0.03 * stall_torque_nm;
+  return [round(coulomb / (no_load_speed_rad_s > 0 ? no_load_speed_rad_s : 6)), round(coulomb)];
+};
 const USES = { passive: [], torque: [], duty: ["stall_torque_nm", "no_load_speed_rad_s"], position:
   MOTOR.map((f) => f[0]), speed: MOTOR.map((f) => f[0]) };
 const DRIVES = { passive: "nothing: swings freely", torque: "a torque", duty: "a duty", position:
@@ -21,15 +32,26 @@ const field = (link, [name, text, value]) => {
   input.dataset.field = name;
   return element("label", {}, text, input);
 };
+const given = JSON.parse(document.getElementById("draft")?.textContent ?? "null");
 const addLink = () => {
-  const number = links.children.length + 1;
+  const number = links.children.length + 1, known = given?.links[number - 1];
   const drive = element("select", {}, ...Object.entries(DRIVES).map(([value, text]) =>
     element("option", { value, textContent: text })));
   drive.dataset.field = "drive";
   const set = element("fieldset", {}, element("legend", {
     textContent: `Link ${number}, on joint ${number}` }),
     ...FIELDS.map((each) => field(number, each)), element("label", {}, "moved by", drive),
-      ...MOTOR.map((each) => field(number, each)));
+      ...MOTOR.map((each) => field(number, each)), ...FRICTION.map(([name, text]) =>
+        field(number, [name, text, ""])));
+  const of = (name) => set.querySelector(`[data-field=${name}]`);
+  if (known) for (const [name, value] of Object.entries(known))
+    if (of(name) && value !== null) of(name).value = value;
+  const propose = () => {
+    const figures = Object.fromEntries(MOTOR.map(([name]) => [name, Number(of(name).value)]));
+    friction(drive.value, figures).forEach((value, i) => { of(FRICTION[i][0]).value = value; });
+  };
+  propose();
+  drive.addEventListener("change", propose);
   const uses = () => {
     for (const [name] of MOTOR) set.querySelector(`[data-field=${name}]`).parentElement.hidden =
       !USES[drive.value].includes(name);
@@ -41,9 +63,14 @@ const addLink = () => {
 const plan = () => ({
   name: form.elements.name.value, angle_zero: form.elements.angle_zero.value, angles:
     form.elements.angles.value,
+  friction: [...links.children].map((set) => Object.fromEntries(FRICTION.map(([name]) => {
+    const { value } = set.querySelector(`[data-field=${name}]`);
+    return [name, value === "" ? null : Number(value)];
+  }))),
   links: [...links.children].map((set) =>
     Object.fromEntries([...set.querySelectorAll("[data-field]")].map((input) => {
     const { field } = input.dataset;
+    if (FRICTION.some(([name]) => name === field)) return ["", null];
     if (field === "drive") return [field, input.value];
     const used = !MOTOR.some((each) => each[0] === field) ||
       USES[set.querySelector("[data-field=drive]").value].includes(field);
@@ -90,8 +117,14 @@ if (form) {
   form.addEventListener("input", draw);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
-    try { go(await send("new-model", plan())); } catch (error) { say(error.message); }
+    mark(null, form);
+    try { go(await send("new-model", plan())); } catch (error) {
+      say(error.message); mark(error, form); }
   });
+  if (given) {
+    for (const name of ["name", "angle_zero", "angles"]) form.elements[name].value = given[name];
+    count.value = given.links.length;
+  }
   fill();
 }
 const columns = document.getElementById("columns");
@@ -102,5 +135,7 @@ columns?.addEventListener("submit", async (event) => {
     quantity: row.dataset.quantity, column: of(row, "column").value, unit: of(row, "unit").value,
     reversed: of(row, "reversed")?.checked ?? false, offset: Number(of(row, "offset")?.value ?? 0),
   }));
-  try { go(await send("columns", { columns: chosen })); } catch (error) { say(error.message); }
+  mark(null, columns);
+  try { go(await send("columns", { columns: chosen })); } catch (error) {
+    say(error.message); mark(error, columns); }
 });

@@ -76,7 +76,7 @@ export const stroke = (pen, time, values, begin, end, x, y) => {
 };
 
 // Dots of one quantity over another; those that `marked` holds stand out.
-export const scatter = (canvas, xs, ys, { band, scale = 1, xLabel, marked }) => {
+export const scatter = (canvas, xs, ys, { band, scale = 1, xLabel, marked, joined }) => {
   const [pen, width, height] = prepare(canvas);
   let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
   for (let k = 0; k < xs.length; k++) {
@@ -105,6 +105,13 @@ export const scatter = (canvas, xs, ys, { band, scale = 1, xLabel, marked }) => 
   if (band) {
     pen.fillStyle = colour("green"); pen.globalAlpha = 0.25;
     pen.fillRect(50, y(band), width - 58, Math.max(1, y(-band) - y(band)));
+  }
+  if (joined) {
+    pen.strokeStyle = colour("blue"); pen.globalAlpha = 1; pen.lineWidth = 1.4;
+    pen.beginPath();
+    for (let k = 0; k < xs.length; k++) pen.lineTo(x(xs[k]), y(ys[k]));
+    pen.stroke();
+    return;
   }
   const stride = Math.max(1, Math.floor(xs.length / 6000));
   for (const pass of [0, 1]) {

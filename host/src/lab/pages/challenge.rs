@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 /// The page.
 pub fn page(session: &LabSession, store: &SessionStore) -> Markup {
-    let saved = session.saved();
+    let saved = session.view();
     let evaluation = session.known_evaluation(&saved);
     let rounds: Vec<(u32, Round)> = store
         .all()
@@ -47,7 +47,7 @@ pub fn page(session: &LabSession, store: &SessionStore) -> Markup {
 fn open(number: u32, seed: u64) -> Markup {
     html! {
         div.box {
-            h2 { "Round " (seed) " is open" }
+            h2 { "The round with seed " (seed) " is open" }
             p { a href={ "/s/" (number) "/compare" } { "See where the model fails" }
                 ", try effects under "
                 a href={ "/s/" (number) "/what-if" } { "What if" } ", or let it be diagnosed under "
@@ -60,7 +60,7 @@ fn open(number: u32, seed: u64) -> Markup {
 fn scored(seed: u64, result: &RoundResult) -> Markup {
     html! {
         div.box #score data-solved=(result.solved) {
-            h2 { "Round " (seed) " is over" }
+            h2 { "The round with seed " (seed) " is over" }
             @if result.solved { p.solved { "Solved: the model names what was hidden." } }
             @else { p.unsolved { "Not solved: the model does not name what was hidden." } }
             table {

@@ -10,7 +10,7 @@ use maud::{Markup, html};
 
 /// The page.
 pub fn page(session: &LabSession) -> Result<Markup, LabError> {
-    let saved = session.saved();
+    let saved = session.view();
     let (evaluation, body) =
         evaluated(session, &saved, |evaluation| Ok(shown(&saved, evaluation)))?;
     Ok(frame::page(
@@ -32,6 +32,9 @@ fn shown(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
                       Below, the residual: measured minus predicted. A good model's residual \
                       stays inside the shaded noise floor. Drag across a chart to zoom, Shift and \
                       drag to move." }
+            (left_out(saved))
+            @if runs_away(evaluation) { p.warning #runs-away {
+                "The model runs away from the measurement: look at signs and units, and at friction;                  a driven joint without any runs ever faster." } }
             (controls(saved, evaluation))
             div #curves data-name=(format!("model {}", saved.current)) {}
         }
@@ -51,16 +54,58 @@ fn shown(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
                 }
             }
             div.scatters #scatters {}
+            h3 { "The residual by itself" }
+            p.lead { "Of the motion drawn above. What is noise forgets itself at once and lies at \
+                      all frequencies alike; a peak is a law that the model lacks." }
+            div.scatters {
+                figure { figcaption #acf-name { "Autocorrelation" } canvas.scatter #acf role="img"
+                    aria-label="autocorrelation of the residual over the lag" {} }
+                figure { figcaption #spectrum-name { "Spectrum" } canvas.scatter #spectrum role="img"
+                    aria-label="spectrum of the residual over the frequency" {} }
+            }
+            h3 { "Any quantity over any other" }
+            div.row {
+                label for="xy-y" { "Upwards" } select #xy-y {}
+                label for="xy-x" { "across" } select #xy-x {}
+            }
+            figure { figcaption #xy-name {} canvas.scatter #xy role="img"
+                aria-label="one quantity over another" {} }
         }
         section {
             h2 { "Figures" }
-            (signals(&comparison.signals))
+            (signals(&comparison.signals, evaluation))
             h3 { "The error over ever longer runs" }
             p.facts #horizons-wanted { "Fitting start states …" }
             h3 { "The same on the command line" }
             (command(&saved.compare_command()))
         }
     }
+}
+
+/// Why some logs are not here.
+fn left_out(saved: &SavedSession) -> Markup {
+    html! {
+        @for log in &saved.left_out {
+            p.warning { b { (log.name) } " is left out: this model cannot read it. " (log.found) ". "
+                (log.remedy) "." }
+        }
+    }
+}
+
+/// Whether the error is out of all proportion to the motion.
+fn runs_away(evaluation: &SessionEvaluation) -> bool {
+    let data = &evaluation.run.data;
+    let motions = 0..data.motions.len();
+    let ranges = motions.flat_map(|motion| (0..data.joints()).map(move |joint| (motion, joint)));
+    let widest = ranges.map(|(motion, joint)| {
+        let values = data.measured(motion, joint).iter().copied();
+        let ends = values.filter(|value| value.is_finite());
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        high - low
+    });
+    evaluation.rms() > 3.0 * widest.fold(0.0, f64::max)
 }
 
 /// A command line that can be copied.
@@ -110,13 +155,14 @@ fn controls(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
             label for="window" { "Longest window" }
             input #window type="range" min=(low) max=(high) step="0.01" value=(at);
             output #window-shown for="window" {}
-            @if saved.window != ChosenWindow::Automatic {
+            @if saved.window != ChosenWindow::Automatic && saved.diagnosis.is_some() {
                 button.small #window-automatic type="button" { "As the diagnosis has it" }
             }
         }
         @for line in &evaluation.at_its_horizon().unobserved { p.note { (line) } }
         p.facts {
-            span { "Error " span #shown-about {} b #shown-error { (in_milli(evaluation.rms(), evaluation)) } }
+            span { "Error " span #shown-about {} b #shown-error { (in_milli(evaluation.rms(), evaluation)) }
+                " " span #shown-over { (evaluation.over()) } }
             span { "This motion is " b #shown-role {} }
             span { "The model runs uncorrected for " b #shown-window {} }
         }
@@ -138,7 +184,11 @@ fn failures(failures: &[Failure]) -> Markup {
     }
 }
 
-fn signals(signals: &[SignalError]) -> Markup {
+fn signals(signals: &[SignalError], evaluation: &SessionEvaluation) -> Markup {
+    let words = |signal: &SignalError, error: f64| match signal.beside_angle {
+        true => format!("{} {}", mrad(error), signal.quantity.milli()),
+        false => evaluation.shown(signal.joint - 1).error_words(error),
+    };
     html! {
         div.scroll tabindex="0" { table {
             thead { tr {
@@ -148,10 +198,10 @@ fn signals(signals: &[SignalError]) -> Markup {
             } }
             tbody { @for signal in signals { tr {
                 td { (signal.joint) @if signal.beside_angle { ", rate" } }
-                td.number { (mrad(signal.rms)) " " (signal.quantity.milli()) }
-                td.number { (mrad(signal.largest)) " " (signal.quantity.milli()) }
+                td.number { (words(signal, signal.rms)) }
+                td.number { (words(signal, signal.largest)) }
                 td.number { (short(signal.fit_percent)) " %" }
-                td.number { (mrad(signal.floor)) " " (signal.quantity.milli()) }
+                td.number { (words(signal, signal.floor)) }
                 td.number { (percent(signal.share_above_floor)) }
                 td { @for test in &signal.tests {
                     span class=(if test.passed { "good" } else { "bad" }) title=(test.meaning) {

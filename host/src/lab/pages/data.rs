@@ -1,30 +1,46 @@
 //! Bringing data: logs, what the check finds, raw curves, the model.
 
-use super::data_model;
 use super::frame;
+use super::{data_model, new_model};
 use crate::error::Result;
-use crate::lab::session::{EXAMPLES, LabSession, LogFacts, MOST_BYTES, SavedSession};
+use crate::lab::session::{
+    EXAMPLES, LabSession, LogFacts, MODEL_ENDINGS, MOST_BYTES, SavedSession,
+};
 use crate::log::{LogFinding, LogFormat, Severity};
+use crate::output::number::NONE;
 use maud::{Markup, html};
 
 /// The page.
 pub fn page(session: &LabSession) -> Result<Markup> {
     let saved = session.saved();
+    let view = session.view();
     let model = session.model(&saved)?;
     let facts = session.log_facts(&saved, model.as_ref());
-    let evaluation = session.known_evaluation(&saved);
+    let evaluation = session.known_evaluation(&view);
+    let number = session.number;
     let body = html! {
         h1.visually-hidden { "Data" }
-        section { (bring(session.number)) }
+        section { (bring(number)) }
         @if !facts.is_empty() {
             section {
                 h2 { "Logs" }
                 (logs(&facts))
+                @if model.is_some() {
+                    p #onward { a.button href={ "/s/" (number) "/compare" } {
+                        "Compare them with the model" } }
+                } @else {
+                    p #onward { "Next: " a href="#make" { "make a model" }
+                        " that says what the columns mean, or bring one." }
+                }
             }
-            section {
-                h2 { "What the check finds" }
-                @if model.is_some() { p #findings-wanted { "Checking …" } }
-                @else { p.lead { "Bring or make a model: it says what the columns mean." } }
+        }
+        @if model.is_none() { (new_model::section(session, &saved)) }
+        @if !facts.is_empty() {
+            @if model.is_some() {
+                section {
+                    h2 { "What the check finds" }
+                    p #findings-wanted { "Checking …" }
+                }
             }
             section {
                 h2 { "The log as it stands" }
@@ -35,7 +51,7 @@ pub fn page(session: &LabSession) -> Result<Markup> {
     };
     Ok(frame::page(
         session,
-        &saved,
+        &view,
         "data",
         evaluation.as_deref(),
         "model.js",
@@ -47,10 +63,11 @@ fn bring(number: u32) -> Markup {
     html! {
         div.two {
             div.drop #drop {
-                h2 { "Bring a log" }
+                h2 { "Bring logs, a model, or a session" }
                 p { label for="files" {
-                    "Drop logs here, or choose them: CSV, MCAP, rosbag2 (db3), MATLAB (mat), \
-                     Parquet, JSON of a BAM bench." } }
+                    "Drop files here, or choose them. Logs: CSV, MCAP, rosbag2 (db3), MATLAB (mat), \
+                     Parquet, JSON of a BAM bench. Models: TOML, URDF, MJCF (xml). A saved session: \
+                     session.json." } }
                 input #files type="file" multiple accept=(accepted()) data-most=(MOST_BYTES);
             }
             div {
@@ -72,7 +89,8 @@ fn bring(number: u32) -> Markup {
 
 /// Endings that a chooser of files offers.
 fn accepted() -> String {
-    let endings = LogFormat::endings().map(|ending| format!(".{ending}"));
+    let endings = LogFormat::endings().chain(MODEL_ENDINGS);
+    let endings = endings.map(|ending| format!(".{ending}"));
     endings.collect::<Vec<_>>().join(",")
 }
 
@@ -95,20 +113,23 @@ fn log(fact: &LogFacts) -> Markup {
             td {
                 (log.file)
                 @if let Some((first, last)) = log.rows { ", rows " (first) " to " (last) }
-                @if let Err((found, remedy)) = &fact.content { p.bad { (found) } p.note { (remedy) }
-                    }
+                @if let Err((found, remedy)) = &fact.content {
+                    p.bad.unreadable { (found) }
+                    p.note { (remedy) @if !remedy.is_empty() { ". " } "It is left out." }
+                }
             }
             @match &fact.content {
-                Ok((motions, samples, seconds)) => {
-                    td.number { (motions) } td.number { (samples) } td.number {
-                        (format!("{seconds:.1}")) }
+                Ok(content) => {
+                    td.number { (content.motions.map_or(NONE.into(), |n| n.to_string())) }
+                    td.number { (content.samples) }
+                    td.number { (content.seconds.map_or(NONE.into(), |s| format!("{s:.1}"))) }
                 }
                 Err(_) => { td.number { "-" } td.number { "-" } td.number { "-" } }
             }
             td {
                 form data-send="log" {
-                    input type="hidden" name="file" value=(log.file);
-                    select name="action" data-submit aria-label={ "Role of " (log.file) } {
+                    input type="hidden" name="file" value=(log.name());
+                    select name="action" data-submit aria-label={ "Role of " (log.name()) } {
                         option value="fit" selected[!log.held_out] { "fitted" }
                         option value="hold_out" selected[log.held_out] { "held out" }
                     }
@@ -116,9 +137,9 @@ fn log(fact: &LogFacts) -> Markup {
             }
             td {
                 form.small-form data-send="log" {
-                    input type="hidden" name="file" value=(log.file);
+                    input type="hidden" name="file" value=(log.name());
                     input type="hidden" name="action" value="remove";
-                    button aria-label={ "Remove " (log.file) } { "Remove" }
+                    button aria-label={ "Remove " (log.name()) } { "Remove" }
                 }
             }
         }
@@ -143,10 +164,24 @@ pub fn findings(session: &LabSession, findings: &[LogFinding]) -> Markup {
 }
 
 fn raw(saved: &SavedSession) -> Markup {
+    let mut files: Vec<&str> = Vec::new();
+    for log in &saved.logs {
+        if !files.contains(&log.file.as_str()) {
+            files.push(&log.file);
+        }
+    }
     html! {
         div.row {
             label for="raw-file" { "File" }
-            select #raw-file { @for log in &saved.logs { option { (log.file) } } }
+            select #raw-file { @for file in files { option { (file) } } }
+        }
+        p.note { "Zoom to a stretch, by dragging or by the keys; then take it alone, or judge by it. \
+                  What judges is shaded." }
+        div.row #cut {
+            button #cut-keep type="button" { "Use only what is shown" }
+            button #cut-hold-out type="button" { "Judge by what is shown, fit the rest" }
+            button #cut-whole type="button" { "Use the whole file" }
+            span.note #cut-rows aria-live="polite" {}
         }
         div #raw {}
     }

@@ -1,5 +1,6 @@
 //! The model on the data page: its columns, its text, the form of a new one.
 
+use super::new_model;
 use crate::lab::session::{LabSession, SavedSession};
 use crate::log::RawLog;
 use crate::model::{Column, ColumnMean, Dimension, Model};
@@ -15,7 +16,7 @@ pub fn sections(session: &LabSession, saved: &SavedSession, model: Option<&Model
             }
         }
         section {
-            h2 { @if model.is_some() { "The model" } @else { "Bring a model" } }
+            h2 { @if model.is_some() { "The model" } @else { "Or type a model" } }
             form data-send="model" {
                 p { label for="toml" { "Model file (TOML)" } }
                 textarea #toml name="toml" spellcheck="false" {
@@ -28,10 +29,12 @@ pub fn sections(session: &LabSession, saved: &SavedSession, model: Option<&Model
                 }
             }
         }
-        section {
-            details open[model.is_none()] {
-                summary { h2 { "Make a new model from a form" } }
-                (form(model.is_some()))
+        @if model.is_some() {
+            section {
+                details {
+                    summary { h2 { "Make a new model from a form" } }
+                    (new_model::form(session, saved))
+                }
             }
         }
     }
@@ -159,39 +162,6 @@ fn column(
                 td { input type="number" step="any" data-field="offset" value=(column.map_or(0.0,
                     |c| c.offset)) aria-label={ "Added to " (title) }; }
             }
-        }
-    }
-}
-
-fn form(replaces: bool) -> Markup {
-    html! {
-        form #new-model {
-            div.two {
-                div {
-                    div.row { label { "Name" input name="name" value="my arm" required; } }
-                    div.row { label { "Links" input type="number" name="count" min="1" max="32"
-                        value="1"; } }
-                    div.row { label { "Angles are zero"
-                        select name="angle_zero" {
-                            option value="hanging" { "hanging straight down" }
-                            option value="upright" { "straight up" }
-                            option value="horizontal" { "to the right" }
-                        }
-                    } }
-                    div.row { label { "and measured from"
-                        select name="angles" {
-                            option value="relative" { "the link before" }
-                            option value="absolute" { "the world" }
-                        }
-                    } }
-                }
-                svg #chain role="img"
-                    aria-label="The chain as typed: links, joints, centres of mass" {}
-            }
-            div #links {}
-            @if replaces { p.note {
-                "The new model takes the place of the present one and its steps." } }
-            div.row { button.main { "Make this model" } }
         }
     }
 }

@@ -47,7 +47,7 @@ fn name(saved: &SavedSession) -> String {
 }
 
 fn logs(saved: &SavedSession) -> String {
-    let names: Vec<&str> = saved.logs.iter().map(|log| log.file.as_str()).collect();
+    let names: Vec<String> = saved.logs.iter().map(|log| log.name()).collect();
     names.join(", ")
 }
 

@@ -1,7 +1,7 @@
 //! What stands around every page: where one is, the model in force, its error.
 
 use super::in_milli;
-use crate::lab::session::{LabSession, SavedSession, SessionEvaluation};
+use crate::lab::session::{LabSession, SavedSession, SessionEvaluation, listed, model_sha256};
 use maud::{DOCTYPE, Markup, html};
 
 /// Pages of a session: address and name.
@@ -34,6 +34,31 @@ pub fn bare(title: &str, body: &Markup) -> Markup {
     }
 }
 
+/// Says in a page why something is refused; `inside` leads back to the lab.
+pub fn refused(title: &str, why: &[&str], inside: bool) -> Markup {
+    let sentence = |text: &str| {
+        let mut letters = text.chars();
+        let first = letters
+            .next()
+            .map(|letter| letter.to_uppercase().collect::<String>());
+        first.unwrap_or_default() + letters.as_str() + "."
+    };
+    let body = html! {
+        div.bar-top role="banner" { span.brand { "handstand lab" } }
+        main #refused {
+            section {
+                h1 { (title) }
+                @for line in why.iter().filter(|line| !line.is_empty()) { p { (sentence(line)) } }
+                @if inside {
+                    p { a href="/" { "To your session" } ", or "
+                        a href="/sessions" { "to all sessions" } "." }
+                }
+            }
+        }
+    };
+    bare(title, &body)
+}
+
 /// The page that goes on by itself.
 pub fn entrance() -> Markup {
     html! {
@@ -60,6 +85,9 @@ pub fn page(
         .find(|page| page.0 == here)
         .map_or(here, |page| page.1);
     let running = session.job.state().is_running();
+    let shown = saved
+        .step()
+        .map_or(String::new(), |step| model_sha256(&step.toml));
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -67,7 +95,7 @@ pub fn page(
                 (head(&format!("{name} - handstand lab")))
                 script type="module" src={ "/assets/" (script) } {}
             }
-            body data-session=(number) data-running[running] {
+            body data-session=(number) data-running[running] data-model=(shown) {
                 (top(number, here))
                 (status(saved, evaluation))
                 div #message role="alert" {}
@@ -103,7 +131,16 @@ fn status(saved: &SavedSession, evaluation: Option<&SessionEvaluation>) -> Marku
             @if let Some(evaluation) = evaluation { (error(evaluation)) }
             // The page does not wait for it; its script asks.
             @else if !saved.logs.is_empty() { span #error-wanted { "Error …" } }
+            @if !saved.left_out.is_empty() { (left_out(saved)) }
         }
+    }
+}
+
+/// Which logs the numbers are not of.
+fn left_out(saved: &SavedSession) -> Markup {
+    let files: Vec<String> = saved.left_out.iter().map(|log| log.name.clone()).collect();
+    html! {
+        span.bad #left-out { "Without " (listed(&files)) ", which this model cannot read" }
     }
 }
 
@@ -112,7 +149,7 @@ pub fn error(evaluation: &SessionEvaluation) -> Markup {
     html! {
         span { "Error " b #error-now data-error=(evaluation.rms()) {
             (in_milli(evaluation.rms(), evaluation))
-        } }
+        } " " (evaluation.over()) }
         span { "Noise floor " b { (in_milli(evaluation.floor(), evaluation)) } }
     }
 }

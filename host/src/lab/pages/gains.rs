@@ -15,7 +15,7 @@ const SLIDERS: [(&str, &str, f64, f64, f64); 4] = [
 
 /// The page.
 pub fn page(session: &LabSession) -> Result<Markup, LabError> {
-    let saved = session.saved();
+    let saved = session.view();
     let evaluation = session.known_evaluation(&saved);
     let (script, body) = match session.model(&saved)? {
         Some(model) if model.driven_joints().is_empty() => ("lab.js", undriven(session.number)),
@@ -51,7 +51,7 @@ fn shown() -> Markup {
             h1 { "Gains that hold it upright" }
             p.lead { "The linear-quadratic regulator of the model in force. The response is \
                       simulated with every effect that the model has learned, from a lean of 20 \
-                      mrad." }
+                      mrad (1.1 deg)." }
             @for (name, title, low, high, at) in SLIDERS {
                 div.wide-slider {
                     label for=(name) { (title) }
@@ -63,13 +63,14 @@ fn shown() -> Markup {
             }
             div.row {
                 label { input #own-delay type="checkbox" checked; "the model's own delay" }
-                button #find-region type="button" { "Find the region of attraction" }
             }
             div.two {
                 div { h2 { "Poles" } canvas #poles role="img"
                     aria-label="Poles of the closed loop and the unit circle" {} }
                 div { h2 { "Figures" } div #figures aria-live="polite" {} }
             }
+            h2 { "Does it hold?" }
+            div #verified aria-live="polite" { p.note { "Simulating the loop …" } }
             h2 { "Response" }
             div #response {}
             h2 { "K" }

@@ -3,14 +3,21 @@
 use super::compare::command;
 use super::learn_card::card;
 use super::learn_steps::steps;
-use super::{evaluated, frame, in_mrad};
+use super::what_if::own_paths;
+use super::{evaluated, frame};
+use crate::fitting::Horizon;
 use crate::lab::reply::LabError;
-use crate::lab::session::{LabSession, SavedDiagnosis, SavedSession, SessionEvaluation};
+use crate::lab::session::{
+    ChosenWindow, LabSession, SavedDiagnosis, SavedProposal, SavedSession, SessionEvaluation, over,
+    value_name,
+};
+use crate::model::Model;
+use crate::output::number::{NONE, exact, short, unit};
 use maud::{Markup, html};
 
 /// The page.
 pub fn page(session: &LabSession) -> Result<Markup, LabError> {
-    let saved = session.saved();
+    let saved = session.view();
     let (evaluation, body) = evaluated(session, &saved, |evaluation| {
         shown(session, &saved, evaluation)
     })?;
@@ -35,12 +42,14 @@ fn shown(
             p.lead { "Each bar is the typical (RMS) error of one model, all joints and motions \
                       together; the thin line is the noise floor. Adding an effect makes a step; \
                       any step can be undone." }
+            (since_the_diagnosis(saved, evaluation))
             (steps(session, saved)?)
         }
         section {
             h2 { "What is missing?" }
-            (ask(saved))
+            (ask(saved, evaluation))
             @if let Some(diagnosis) = &saved.diagnosis { (said(saved, diagnosis, evaluation)) }
+            @if let Some(proposal) = saved.proposal() { (proposed(session.number, proposal)) }
         }
         section {
             h2 { "The same on the command line" }
@@ -51,8 +60,58 @@ fn shown(
     })
 }
 
-fn ask(saved: &SavedSession) -> Markup {
+/// Says that a diagnosis changed what errors are over, and takes it back.
+fn since_the_diagnosis(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
+    let by_diagnosis = saved.window == ChosenWindow::Automatic;
+    let judged_s = saved.diagnosis.as_ref().and_then(|said| said.horizon_s);
+    html! {
+        @if evaluation.run.horizon != Horizon::Whole {
+            div.box #rebased {
+                @if by_diagnosis && judged_s.is_some() {
+                    p { "Since the diagnosis all errors here are " b { (evaluation.over()) }
+                        ", which is what it judged by: the model starts again from the measurement                         that often. Before it they were over whole motions." }
+                } @else {
+                    p { "All errors here are " b { (evaluation.over()) }
+                        ", as you chose on the Compare page." }
+                }
+                p.facts #whole-wanted { "The same over whole motions …" }
+                form.small-form data-send="horizon" {
+                    input type="hidden" name="window" value="whole";
+                    input type="hidden" name="page" value="learn";
+                    button { "Show all errors over whole motions" }
+                }
+            }
+        } @else if let (ChosenWindow::Whole, Some(seconds)) = (saved.window, judged_s) {
+            form.row.small-form data-send="horizon" {
+                input type="hidden" name="window" value="automatic";
+                input type="hidden" name="page" value="learn";
+                span { "All errors here are over whole motions." }
+                button { "Show them " (over(Horizon::Seconds(seconds))) ", as the diagnosis judged" }
+            }
+        }
+    }
+}
+
+/// The errors of all steps over whole motions.
+pub fn whole(session: &LabSession) -> Markup {
+    let mut saved = session.view();
+    saved.window = ChosenWindow::Whole;
+    let known = (0..saved.steps.len()).filter_map(|step| {
+        let evaluation = session.evaluation(&saved, step).ok().flatten()?;
+        Some((step, evaluation.in_words(evaluation.rms())))
+    });
+    html! {
+        p.facts #whole {
+            span { "The same over whole motions:" }
+            @for (step, error) in known { span { "model " (step) " " b { (error) } } }
+        }
+    }
+}
+
+fn ask(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
     let again = saved.diagnosis.is_some();
+    let model = &evaluation.run.model;
+    let proposes = !model.driven_joints().is_empty() && !model.slides();
     html! {
         div #progress hidden {
             span #what {} progress aria-label="Progress" {}
@@ -68,6 +127,17 @@ fn ask(saved: &SavedSession) -> Markup {
                 input type="hidden" name="names" value="";
                 button data-work { "Fit the model's free values" }
             }
+            @if proposes {
+                form data-send="next" {
+                    button #next data-work { "Which experiment next?" }
+                }
+            }
+        }
+        (fit_what(model))
+        @if !proposes {
+            p.note { "The next experiment is proposed for rigs whose joints turn and are driven; "
+                @if model.slides() { "a joint of this one slides." } @else {
+                    "this one is moved by hand: let it go from other angles." } }
         }
     }
 }
@@ -85,24 +155,34 @@ fn said(
         _ => "verdict-unfit",
     };
     let current = diagnosis.step == saved.current;
+    let words = |error: Option<f64>| error.map_or(NONE.into(), |e| evaluation.in_words(e));
+    // What a button of this page does is not said as a command.
+    let next = || {
+        diagnosis
+            .next
+            .iter()
+            .filter(|line| !line.contains(": handstand "))
+    };
     html! {
         div class={ "verdict " (class) } #verdict data-verdict=(diagnosis.verdict) {
             p { span.role { "Diagnosis of model " (diagnosis.step) ": "
-                (diagnosis.verdict.replace('_', " ")) } }
+                (diagnosis.verdict.replace('_', " ")) ", "
+                (over(Horizon::from_seconds(diagnosis.horizon_s))) } }
             @for line in &diagnosis.summary { p { (line) } }
             p.facts {
-                span { "Error as given " b { (in_mrad(diagnosis.before_rad)) } }
-                span { "with what was found " b { (in_mrad(diagnosis.after_rad)) } }
-                span { "floor " b { (in_mrad(diagnosis.floor_rad)) } }
+                span { "Error as given " b { (words(diagnosis.before_rad)) } }
+                span { "with what was found " b { (words(diagnosis.after_rad)) } }
+                span { "floor " b { (words(diagnosis.floor_rad)) } }
                 span { "on " @if diagnosis.held_out { "motions held out" } @else {
-                    "the motions that were fitted" } }
+                    "the motions that were fitted" } ", "
+                    (over(Horizon::from_seconds(diagnosis.horizon_s))) }
             }
         }
         @if !current { p.note {
             "The model in force is another one by now; diagnose again to learn about it." } }
-        @if !diagnosis.next.is_empty() {
+        @if next().next().is_some() {
             h3 { "Next" }
-            ul { @for line in &diagnosis.next { li { (line) } } }
+            ul { @for line in next() { li { (line) } } }
         }
         @if !diagnosis.warnings.is_empty() {
             h3 { "Be wary" }
@@ -115,11 +195,69 @@ fn said(
     }
 }
 
+/// Which values to fit, each with what it is now and the bounds of what is possible.
+fn fit_what(model: &Model) -> Markup {
+    let paths = own_paths(model);
+    let values = paths
+        .iter()
+        .filter_map(|path| Some((path, path.get(model)?)));
+    let values = values.filter(|(_, value)| value.is_finite());
+    html! {
+        details #fit-what {
+            summary { "Choose what is fitted" }
+            form data-send="fit" data-names {
+                div.scroll tabindex="0" { table {
+                    thead { tr { th { "Fit" } th { "Value" } th.number { "Now" } th { "Unit" }
+                        th.number { "Bounds" } } }
+                    tbody { @for (path, value) in values {
+                        @let (low, high) = path.bounds(model);
+                        @let address = path.to_string();
+                        tr {
+                            td { input type="checkbox" id={ "fit-" (address) } data-name=(address)
+                                checked[model.free.contains(path)]; }
+                            td { label for={ "fit-" (address) } { (value_name(&address)) } }
+                            td.number { (exact(value)) }
+                            td { (unit(path.unit())) }
+                            td.number { (short(low)) " to " (short(high)) }
+                        }
+                    } }
+                } }
+                div.row { button data-work { "Fit what is ticked" } }
+            }
+        }
+    }
+}
+
+/// The experiment that comes next.
+fn proposed(number: u32, proposal: &SavedProposal) -> Markup {
+    html! {
+        h3 #proposal { "The next experiment" }
+        @if proposal.steps.is_empty() {
+            p { "None within the limits of these logs helps; what was simulated stands below." }
+        }
+        ol { @for step in &proposal.steps { li { (step) } } }
+        @if proposal.motion_csv.is_some() {
+            p { a href={ "/s/" (number) "/download/next.csv" } { "Save the motion, next.csv" } }
+        }
+        details {
+            summary { "All of it, as the command " code { "handstand next" } " prints it" }
+            pre.commands tabindex="0" { (proposal.text) }
+        }
+    }
+}
+
 fn commands(saved: &SavedSession) -> String {
     let steps = saved.steps.iter().take(saved.current + 1);
     let made = steps.filter_map(|step| step.command.clone());
     let mut lines: Vec<String> = made.collect();
     lines.push(saved.diagnose_command());
+    if let Some(said) = &saved.diagnosis {
+        let next = said
+            .next
+            .iter()
+            .filter_map(|line| line.split_once(": handstand "));
+        lines.extend(next.map(|(_, command)| format!("handstand {command}")));
+    }
     lines.push(saved.compare_command());
     lines.join("\n")
 }

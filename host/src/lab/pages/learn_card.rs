@@ -1,10 +1,12 @@
 //! An explanation as a card: law, signature beside this log's residual, evidence, the experiment.
 
-use super::in_mrad;
 use crate::compare::residual_variables;
 use crate::effects::signature::signature;
 use crate::effects::{Effect, named};
-use crate::lab::session::{CardRole, SavedCard, SavedSession, SessionEvaluation};
+use crate::lab::session::{
+    CardRole, SavedCard, SavedSession, SessionEvaluation, effect_name, effect_of, listed,
+    value_name,
+};
 use crate::output::number::short;
 use crate::output::plot::{Chart, Curve, Tone};
 use crate::report::signature_chart;
@@ -37,17 +39,17 @@ pub fn card(
             h3 { (title(card)) }
             p.note { code { (names(card)) } }
             @if let [only] = card.effects.as_slice() {
-                @if let Some((effect, joint)) = parts(only) {
+                @if let Some((effect, joint)) = effect_of(only) {
                     (pictures(effect, joint, evaluation)) }
             }
             dl {
-                @for effect in card.effects.iter().filter_map(|name| parts(name)) {
+                @for effect in card.effects.iter().filter_map(|name| effect_of(name)) {
                     dt { "Law" } dd { code { (effect.0.info().law) } }
                 }
                 @for fitted in &card.fitted { dt { "Fitted" } dd { (fitted) } }
-                dt { "Evidence" } dd { (evidence(card)) }
+                dt { "Evidence" } dd { (evidence(card, evaluation)) }
                 @if !card.why.is_empty() { dt { "Why not" } dd { (card.why) } }
-                @for (effect, _) in card.effects.iter().filter_map(|name| parts(name)) {
+                @for (effect, _) in card.effects.iter().filter_map(|name| effect_of(name)) {
                     @let info = effect.info();
                     dt { "Told by" } dd { (info.experiment) }
                 }
@@ -60,7 +62,7 @@ pub fn card(
 
 /// What the effects are taken for; open where they were found.
 fn confusions(card: &SavedCard) -> Markup {
-    let effects = card.effects.iter().filter_map(|name| parts(name));
+    let effects = card.effects.iter().filter_map(|name| effect_of(name));
     let all: Vec<_> = effects
         .flat_map(|(effect, _)| effect.info().confusions())
         .collect();
@@ -83,42 +85,21 @@ fn names(card: &SavedCard) -> String {
     names.collect::<Vec<_>>().join(" + ")
 }
 
-/// An effect and its joint, counted from 0.
-fn parts(name: &str) -> Option<(&'static dyn Effect, Option<usize>)> {
-    let (id, joint) = match name.split_once('@') {
-        Some((id, "all")) => (id, None),
-        Some((id, joint)) => (id, joint.parse::<usize>().ok()?.checked_sub(1)),
-        None => (name, None),
-    };
-    Some((named(id)?, joint))
-}
-
 fn title(card: &SavedCard) -> String {
-    let effects = card.effects.iter().map(|name| {
-        let known = parts(name).map(|(effect, joint)| (effect.info().title, joint));
-        match known {
-            Some((title, Some(joint))) => format!("{title} at joint {}", joint + 1),
-            Some((title, None)) => title.to_string(),
-            None => name.clone(),
-        }
-    });
-    let values = card
-        .values
-        .iter()
-        .map(|path| format!("another value of {path}"));
-    effects.chain(values).collect::<Vec<_>>().join(" and ")
+    let effects = card.effects.iter().map(|name| effect_name(name));
+    let values = card.values.iter();
+    let values = values.map(|path| format!("another {}", value_name(path)));
+    listed(&effects.chain(values).collect::<Vec<_>>())
 }
 
-fn evidence(card: &SavedCard) -> String {
+fn evidence(card: &SavedCard, evaluation: &SessionEvaluation) -> String {
+    let words = |error: f64| evaluation.in_words(error);
     let mut parts = Vec::new();
-    if card.held_out_rad.is_some() {
-        parts.push(format!(
-            "leaves {} on motions held out",
-            in_mrad(card.held_out_rad)
-        ));
+    if let Some(error) = card.held_out_rad {
+        parts.push(format!("leaves {} on motions held out", words(error)));
     }
-    if card.training_rad.is_some() {
-        parts.push(format!("{} on those fitted", in_mrad(card.training_rad)));
+    if let Some(error) = card.training_rad {
+        parts.push(format!("{} on those fitted", words(error)));
     }
     if let Some(bic) = card.bic_change {
         parts.push(format!("BIC change {}", short(bic)));
@@ -180,12 +161,13 @@ fn residual_over(x_label: &str, joint: usize, evaluation: &SessionEvaluation) ->
     let stride = all.len().div_ceil(DOTS).max(1);
     let dots = all.into_iter().step_by(stride);
     let dots = dots.filter(|(x, y)| x.is_finite() && y.is_finite());
-    let points = dots.map(|(x, y)| (x, 1e3 * y)).collect();
+    let shown = evaluation.shown(joint);
+    let points = dots.map(|(x, y)| (x, shown.error_per_si * y)).collect();
     let label = format!("{}, {}", variable.name, variable.unit);
     Some(Chart::new(
         format!("residual over {}", variable.name),
         &label,
-        &format!("residual, {}", run.data.signals[joint].milli()),
+        &format!("residual, {}", shown.error_unit),
         vec![Curve::dots("", Tone::Blue, points)],
     ))
 }

@@ -1,6 +1,6 @@
 //! The steps taken: error bars, undo, notes, files to keep.
 
-use super::in_milli;
+use super::{in_milli, values};
 use crate::error::Result;
 use crate::lab::session::{LabSession, SavedSession, SavedStep, SessionEvaluation};
 use crate::output::number::{NONE, percent};
@@ -42,7 +42,8 @@ impl StepError<'_> {
 pub fn steps(session: &LabSession, saved: &SavedSession) -> Result<Markup> {
     let mut rows = Vec::new();
     for (index, step) in saved.steps.iter().enumerate() {
-        let evaluation = session.evaluation(saved, index)?;
+        // A step that cannot read these logs has no error; the one in force can.
+        let evaluation = session.evaluation(saved, index).ok().flatten();
         rows.push(StepError {
             index,
             step,
@@ -59,6 +60,10 @@ pub fn steps(session: &LabSession, saved: &SavedSession) -> Result<Markup> {
             span {} span { "noise floor" }
             (Bar::new(floor.unwrap_or(0.0), full, Tone::Green).draw())
             span.number { @if let Some(first) = rows.first() { (first.text(floor)) } } span {}
+        }
+        @if let Some(step) = saved.step().filter(|step| !step.values.is_empty()) {
+            h3 { "Values of model " (saved.current) ", as fitted" }
+            (values::table(step))
         }
         div.row {
             (undo(saved))
@@ -115,13 +120,13 @@ fn undo(saved: &SavedSession) -> Markup {
         @if saved.current > 0 {
             form data-send="step" {
                 input type="hidden" name="step" value=(saved.current - 1) data-number;
-                button #undo data-work { "Undo " (saved.steps[saved.current].title) }
+                button #undo data-work { "Undo: " (saved.steps[saved.current].title) }
             }
         }
         @if saved.current + 1 < saved.steps.len() {
             form data-send="step" {
                 input type="hidden" name="step" value=(saved.current + 1) data-number;
-                button #redo data-work { "Do " (saved.steps[saved.current + 1].title) " again" }
+                button #redo data-work { "Do again: " (saved.steps[saved.current + 1].title) }
             }
         }
     }

@@ -10,8 +10,11 @@ pub(super) mod gains;
 pub(super) mod learn;
 pub(super) mod learn_card;
 pub(super) mod learn_steps;
+mod new_model;
+pub(super) mod report;
 pub(super) mod robot;
 mod robot_live;
+mod values;
 pub(super) mod what_if;
 
 use super::reply::LabError;
@@ -22,7 +25,7 @@ use std::sync::Arc;
 
 /// The error of an evaluation as people read it.
 fn in_milli(value: f64, evaluation: &SessionEvaluation) -> String {
-    format!("{} {}", mrad(value), evaluation.quantity().milli())
+    evaluation.in_words(value)
 }
 
 /// An error of angles as people read it; a dash where it is not known.
@@ -40,8 +43,12 @@ fn lacking(number: u32, saved: &SavedSession) -> Markup {
     html! {
         section {
             h1 { "First bring " (lacks) }
-            p { "This page needs " (lacks) ". " a href={ "/s/" (number) "/data" } { "Bring them" }
-                "." }
+            p { "This page needs " (lacks) ". "
+                @if saved.steps.is_empty() && !saved.logs.is_empty() {
+                    a href={ "/s/" (number) "/data#make" } { "Make a model for your log" } "."
+                } @else {
+                    a href={ "/s/" (number) "/data" } { "Bring what is missing" } "."
+                } }
         }
     }
 }

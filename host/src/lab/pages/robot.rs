@@ -9,7 +9,7 @@ use maud::{DOCTYPE, Markup, html};
 
 /// The page; a page of its own in a frame, so that its keys do not meet those of the lab.
 pub fn page(session: &LabSession, robot: Option<&LiveRobot>) -> Result<Markup, LabError> {
-    let saved = session.saved();
+    let saved = session.view();
     let (evaluation, played) = evaluated(session, &saved, |_| Ok(shown(session.number)))?;
     let model = session.model(&saved)?;
     let script = if robot.is_some() { "live.js" } else { "lab.js" };
@@ -41,7 +41,7 @@ fn shown(number: u32) -> Markup {
 
 /// The document in the frame.
 pub fn stage_page(session: &LabSession) -> Result<Markup, LabError> {
-    let saved = session.saved();
+    let saved = session.view();
     let evaluation = session.evaluation(&saved, saved.current)?;
     let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
     let run = &evaluation.run;

@@ -6,14 +6,14 @@ use crate::diagnose::candidates;
 use crate::effects::Parameter;
 use crate::fitting::Candidate;
 use crate::lab::reply::LabError;
-use crate::lab::session::{LabSession, SessionEvaluation};
+use crate::lab::session::{LabSession, SessionEvaluation, value_name};
 use crate::model::{JointField, Link, LinkField, Model, ParameterPath};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
 /// The page.
 pub fn page(session: &LabSession) -> Result<Markup, LabError> {
-    let saved = session.saved();
+    let saved = session.view();
     let (evaluation, body) = evaluated(session, &saved, |evaluation| Ok(shown(evaluation)))?;
     let script = match evaluation {
         Some(_) => "what_if.js",
@@ -39,11 +39,10 @@ fn shown(evaluation: &SessionEvaluation) -> Markup {
     html! {
         section {
             h1 { "What if a value were another one?" }
-            p.lead { "Move a slider and watch the curves: this is how one learns what an effect \
-                      looks like. The windows and their noise floor stay those of the model as it \
-                      is." }
+            p.lead { "Move a slider and watch the curves. The windows and their noise floor stay \
+                      those of the model as it is." }
             div.bench {
-                div {
+                div.bench-sliders {
                     div.row {
                         label for="effect" { "Try an effect" }
                         select #effect {
@@ -62,10 +61,11 @@ fn shown(evaluation: &SessionEvaluation) -> Markup {
                         button #reset type="button" { "As it was" }
                     }
                 }
-                div {
+                div.bench-curves {
                     div.big-error aria-live="polite" {
                         span { "Error " span #error-about {}
-                            b #error-if { (in_milli(evaluation.rms(), evaluation)) } }
+                            b #error-if { (in_milli(evaluation.rms(), evaluation)) } " "
+                            (evaluation.over()) }
                         span { "as it is " b #error-was { (in_milli(evaluation.rms(), evaluation)) }
                             }
                         span { "floor " (in_milli(evaluation.floor(), evaluation)) }
@@ -122,6 +122,7 @@ fn library(model: &Model, candidates: &[Candidate]) -> Value {
 fn entry(path: ParameterPath, value: f64, (low, high): (f64, f64), meaning: &str) -> Value {
     json!({
         "path": path.to_string(),
+        "name": value_name(&path.to_string()),
         "unit": path.unit(),
         "value": value,
         "low": low,
@@ -148,7 +149,8 @@ fn range_of_zero(model: &Model, path: ParameterPath) -> (f64, f64) {
     (0.0, high)
 }
 
-fn own_paths(model: &Model) -> Vec<ParameterPath> {
+/// Addresses of every number of a model.
+pub(super) fn own_paths(model: &Model) -> Vec<ParameterPath> {
     let links = (0..model.link_count())
         .flat_map(|index| LinkField::ALL.map(|field| ParameterPath::Link { index, field }));
     let joints = (0..model.link_count())

@@ -1,5 +1,6 @@
 //! Rounds: an arm with a hidden effect, in a session of its own.
 
+use super::shown_model::ShownModel;
 use super::{act, blocking, session};
 use crate::lab::pages::challenge as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
@@ -37,12 +38,14 @@ pub(super) async fn begin(
 }
 
 /// Hands in the model in force.
-pub(super) async fn hand_in(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
-    act(
-        lab,
-        number,
-        "challenge",
-        |session, _| Ok(session.hand_in()?),
-    )
+pub(super) async fn hand_in(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    shown: ShownModel,
+) -> Answer {
+    act(lab, number, "challenge", move |session, saved| {
+        shown.check(saved)?;
+        Ok(session.hand_in()?)
+    })
     .await
 }

@@ -9,7 +9,7 @@ use crate::lab::pages::{compare as pages, frame};
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
 use crate::lab::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation, aside};
-use crate::model::{Drive, Joint};
+use crate::model::{Drive, Joint, MeasuredSignal};
 use axum::Json;
 use axum::extract::{Path, Query, State};
 use serde::Deserialize;
@@ -30,7 +30,7 @@ pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u3
 pub(super) async fn error(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let saved = session.saved();
+        let saved = session.view();
         Ok(page(match session.evaluation(&saved, saved.current) {
             Ok(Some(evaluation)) => frame::error(&evaluation),
             Ok(None) => return Err(LabError::NotFound("comparison")),
@@ -45,7 +45,7 @@ pub(super) async fn error(State(lab): State<Arc<LabState>>, Path(number): Path<u
 pub(super) async fn horizons(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let saved = session.saved();
+        let saved = session.view();
         let evaluation = session.evaluation(&saved, saved.current)?;
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
         Ok(page(aside(|| pages::horizons(&evaluation))))
@@ -75,7 +75,7 @@ pub(super) async fn curves(
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let mut saved = session.saved();
+        let mut saved = session.view();
         if let Some(horizon) = &asked.horizon {
             let seconds = horizon.parse().ok().filter(|s| WINDOWS_S.contains(s));
             saved.window = seconds.map_or(ChosenWindow::Whole, ChosenWindow::Seconds);
@@ -118,7 +118,7 @@ fn roughly(
     tried: &SavedSession,
     step: usize,
 ) -> Result<Arc<SessionEvaluation>, LabError> {
-    let own = exactly(session, &session.saved(), step)?;
+    let own = exactly(session, &session.view(), step)?;
     match own.run.horizon == tried.horizon() {
         true => Ok(own),
         false => Ok(Arc::new(own.roughly_at(tried.horizon()))),
@@ -150,7 +150,14 @@ pub(super) fn draw(
         }
         inputs.push(motion.input[joint].as_ref().map(|_| {
             let (name, unit) = input_of(&run.model.joints[joint]);
-            json!({ "name": name, "unit": unit })
+            // Goals are read as the angles beside them are.
+            let shown = evaluation.shown(joint);
+            let like_angle = unit == "rad" && shown.unit == "deg";
+            let (unit, per_si) = match like_angle {
+                true => (shown.unit, shown.per_si),
+                false => (unit, 1.0),
+            };
+            json!({ "name": name, "unit": unit, "per_si": per_si })
         }));
     }
     let windows = run.data.windows_of(index).skip(1);
@@ -164,10 +171,11 @@ pub(super) fn draw(
         "held_out": evaluation.is_held_out(index),
         "joints": run.model.link_count(),
         "inputs": inputs,
-        "units": signals.map(|signal| signal.unit()).collect::<Vec<_>>(),
+        "shown": (0..run.data.joints()).map(|joint| evaluation.shown(joint)).collect::<Vec<_>>(),
+        "error": evaluation.shown_error(),
+        "rates": signals.map(|signal| *signal == MeasuredSignal::Rate).collect::<Vec<_>>(),
         "floor": run.data.sigma[..run.data.joints()],
         "rms": evaluation.rms(),
-        "unit": evaluation.quantity().unit(),
         "joint_rms": run.joint_rms(),
         "restarts_s": restarts,
         "window_s": window_s,
@@ -224,7 +232,7 @@ pub(super) async fn scatter(
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let saved = session.saved();
+        let saved = session.view();
         let evaluation = session.evaluation(&saved, saved.current)?;
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
         let run = &evaluation.run;
@@ -236,12 +244,23 @@ pub(super) async fn scatter(
         let residual = residuals.swap_remove(asked.joint);
         arrays.push("residual", residual.into_iter().flatten());
         let variables = residual_variables(&run.model, &run.data.motions, asked.joint);
+        let shown = evaluation.shown(asked.joint);
+        // Angles and speeds are read as the log has them.
+        let read = |unit: &'static str| match unit {
+            "rad" if shown.unit == "deg" => ("deg", shown.per_si),
+            "rad/s" if shown.unit == "deg" => ("deg/s", shown.per_si),
+            unit => (unit, 1.0),
+        };
         for variable in &variables {
-            arrays.push(variable.name, variable.values.iter().copied());
+            let (_, per_si) = read(variable.unit);
+            arrays.push(
+                variable.name,
+                variable.values.iter().map(|value| per_si * value),
+            );
         }
         let names = variables
             .iter()
-            .map(|v| json!({ "name": v.name, "unit": v.unit }));
+            .map(|v| json!({ "name": v.name, "unit": read(v.unit).0 }));
         let conditions = evaluation.failing().iter();
         for (index, failing) in conditions.enumerate() {
             let holds = failing.holds.iter().map(|holds| f64::from(*holds));
@@ -249,7 +268,7 @@ pub(super) async fn scatter(
         }
         Ok(arrays.reply(&json!({
             "variables": names.collect::<Vec<_>>(),
-            "unit": run.data.signals[asked.joint].unit(),
+            "shown": shown,
             "floor": run.data.sigma[asked.joint],
         })))
     })
@@ -259,6 +278,17 @@ pub(super) async fn scatter(
 #[derive(Debug, Deserialize)]
 pub(super) struct HorizonChosen {
     window: ChosenWindow,
+    /// The page that asks, and goes on.
+    #[serde(default)]
+    page: AskingPage,
+}
+
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum AskingPage {
+    #[default]
+    Compare,
+    Learn,
 }
 
 /// Keeps the length of the windows.
@@ -267,9 +297,13 @@ pub(super) async fn horizon(
     Path(number): Path<u32>,
     Json(chosen): Json<HorizonChosen>,
 ) -> Answer {
-    act(lab, number, "compare", move |session, saved| {
+    let page = match chosen.page {
+        AskingPage::Compare => "compare",
+        AskingPage::Learn => "learn",
+    };
+    act(lab, number, page, move |session, _| {
         if let ChosenWindow::Seconds(seconds) = chosen.window {
-            allowed(session, saved, seconds)?;
+            allowed(session, &session.view(), seconds)?;
         }
         session.change(|saved| {
             saved.window = chosen.window;

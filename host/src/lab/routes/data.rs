@@ -1,21 +1,23 @@
 //! Bringing data: logs, examples, models, columns.
 
 use super::arrays::Arrays;
+use super::shown_model::ShownModel;
 use super::{act, blocking, said_shortly, session};
+use crate::error::{Error, Place};
 use crate::lab::pages::data as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{EXAMPLES, LabSession, MOST_BYTES, SavedSession, SavedStep};
+use crate::lab::session::{
+    EXAMPLES, LabSession, LogPart, MOST_BYTES, SavedStep, SessionFile, is_model,
+};
 use crate::log::RawLog;
-use crate::log::init::Draft;
 use crate::model::edit::{ColumnChoice, set_log_columns};
-use crate::model::new_model::{ModelPlan, new_model_toml};
 use axum::Json;
 use axum::body::{Body, to_bytes};
 use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, header};
 use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// The page.
@@ -28,7 +30,7 @@ pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u3
 pub(super) async fn findings(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let found = session.findings(&session.saved())?;
+        let found = session.findings(&session.view())?;
         Ok(page(pages::findings(&session, &found)))
     })
     .await
@@ -60,14 +62,35 @@ pub(super) async fn upload(
         return Err(too_large());
     }
     let bytes = to_bytes(body, MOST_BYTES).await.map_err(|_| too_large())?;
-    let file = blocking(move || {
-        let added = session.add_log(&upload.name, &bytes);
-        added.map_err(|error| said_shortly(&session, error))
+    blocking(move || {
+        let taken = take(&lab, &session, &upload.name, &bytes);
+        taken.map_err(|error| said_shortly(&session, error))
     })
-    .await?;
-    Ok(reply(
-        &json!({ "go": format!("/s/{number}/data"), "file": file }),
-    ))
+    .await
+    .map(|taken| reply(&taken))
+}
+
+/// Takes a file for what it is: a session, a model, or else a log.
+fn take(lab: &LabState, session: &LabSession, name: &str, bytes: &[u8]) -> Result<Value, Error> {
+    let number = session.number;
+    let path = std::path::Path::new(name);
+    if SessionFile::is_meant(name, bytes) {
+        let file = SessionFile::read(name, bytes)?;
+        let new = lab.store.add(|session| session.fill_from(file))?;
+        return Ok(json!({ "go": format!("/s/{}/data", new.number), "session": new.number }));
+    }
+    let mut go = json!({ "go": format!("/s/{number}/data") });
+    if is_model(path) {
+        let text = std::str::from_utf8(bytes).map_err(|_| {
+            let place = Place::file(path);
+            Error::data(place, "this is no text", "save it as UTF-8")
+        })?;
+        session.bring_model(path, text)?;
+        go["model"] = json!(name);
+    } else {
+        go["file"] = json!(session.add_log(name, bytes)?);
+    }
+    Ok(go)
 }
 
 #[derive(Debug, Deserialize)]
@@ -121,6 +144,29 @@ pub(super) async fn log(
 }
 
 #[derive(Debug, Deserialize)]
+pub(super) struct Division {
+    file: String,
+    parts: Vec<LogPart>,
+}
+
+/// Divides a file into parts: rows that are used, and what they are for.
+pub(super) async fn divide(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Json(asked): Json<Division>,
+) -> Answer {
+    act(lab, number, "data", move |session, saved| {
+        // Only files of the session have names here; nothing is looked up by path.
+        let known = saved.logs.iter().any(|log| log.file == asked.file);
+        if !known {
+            return Err(LabError::NotFound("log"));
+        }
+        Ok(session.divide_log(&asked.file, &asked.parts)?)
+    })
+    .await
+}
+
+#[derive(Debug, Deserialize)]
 pub(super) struct ModelText {
     toml: String,
 }
@@ -129,68 +175,34 @@ pub(super) struct ModelText {
 pub(super) async fn model(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
+    shown: ShownModel,
     Json(text): Json<ModelText>,
 ) -> Answer {
     act(lab, number, "data", move |session, saved| {
+        shown.check(saved)?;
         match saved.steps.is_empty() {
             true => session.begin_model("as given", &text.toml)?,
-            false => session.push_step(by_hand("edited by hand", text.toml))?,
+            false => session.push_step(SavedStep::by_hand("edited by hand", text.toml))?,
         }
         Ok(())
     })
     .await
 }
 
-/// Makes a model from a form.
-pub(super) async fn new_model(
-    State(lab): State<Arc<LabState>>,
-    Path(number): Path<u32>,
-    Json(plan): Json<ModelPlan>,
-) -> Answer {
-    act(lab, number, "data", move |session, saved| {
-        let toml = match with_columns(session, saved, &plan) {
-            Some(toml) => toml,
-            None => new_model_toml(&plan)?,
-        };
-        Ok(session.begin_model("made from the form", &toml)?)
-    })
-    .await
-}
-
-/// The model of a form with the columns of the first log, where its names and values say which is
-/// what.
-fn with_columns(session: &LabSession, saved: &SavedSession, plan: &ModelPlan) -> Option<String> {
-    let log = saved.logs.first()?;
-    let raw = RawLog::read(&session.log_path(&log.file)).ok()?;
-    let mut drives = plan.links.iter().map(|link| link.drive.as_str());
-    let driven = drives.find(|drive| *drive != "passive");
-    let draft = Draft::of(&raw, &log.file, driven).ok()?;
-    let head = "# Written from a form, with the columns that a log seems to have: pick others \
-                where they are wrong.\n\n";
-    draft.toml_of(plan, head).ok()
-}
-
 /// Picks columns, units, signs and zeros for the model in force.
 pub(super) async fn columns(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
+    shown: ShownModel,
     Json(choice): Json<ColumnChoice>,
 ) -> Answer {
     act(lab, number, "data", move |session, saved| {
+        shown.check(saved)?;
         let step = saved.step().ok_or(LabError::NotFound("model"))?;
         let toml = set_log_columns(&step.toml, std::path::Path::new("model.toml"), &choice)?;
-        Ok(session.push_step(by_hand("columns picked", toml))?)
+        Ok(session.push_step(SavedStep::by_hand("columns picked", toml))?)
     })
     .await
-}
-
-fn by_hand(title: &str, toml: String) -> SavedStep {
-    SavedStep {
-        title: title.into(),
-        toml,
-        command: None,
-        note: String::new(),
-    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -215,14 +227,25 @@ pub(super) async fn raw(
         let time = raw.time();
         let mut arrays = Arrays::default();
         match time {
-            Some(time) => arrays.push("time", raw.columns[time].iter().copied()),
+            // Four bytes tell no milliseconds of a time that counts from 1970.
+            Some(time) => {
+                let values = &raw.columns[time];
+                let first = values.first().copied().filter(|first| first.abs() > 1e5);
+                let begin = first.unwrap_or(0.0);
+                arrays.push("time", values.iter().map(|value| value - begin));
+            }
             None => arrays.push("time", (0..rows).map(|row| row as f64)),
         }
         for (index, column) in raw.columns.iter().enumerate() {
             arrays.push(format!("column_{index}"), column.iter().copied());
         }
         let time_name = time.map_or("row", |time| raw.names[time].as_str());
-        Ok(arrays.reply(&json!({ "names": raw.names, "time": time, "time_name": time_name })))
+        let parts = saved.logs.iter().filter(|log| log.file == asked.file);
+        let parts = parts.map(|log| json!({ "rows": log.rows, "held_out": log.held_out }));
+        Ok(arrays.reply(&json!({
+            "names": raw.names, "time": time, "time_name": time_name,
+            "parts": parts.collect::<Vec<_>>(),
+        })))
     })
     .await
 }

@@ -1,11 +1,12 @@
-//! What a person takes along: the model, the report, the session.
+//! What a person takes along: the model, the report, the next motion, the session.
 
 use super::{blocking, session};
+use crate::lab::pages::report as pages;
 use crate::lab::reply::{Answer, LabError, download as file};
 use crate::lab::server::LabState;
-use crate::lab::session::{LabSession, SavedSession};
+use crate::lab::session::{LabSession, MOTION_FILE, SavedSession};
 use crate::log::Split;
-use crate::report::{HashedModel, Report, ReportProvenance, html};
+use crate::report::{HashedModel, Report, ReportProvenance, html_with};
 use axum::extract::{Path, State};
 use std::sync::Arc;
 
@@ -23,12 +24,22 @@ pub(super) async fn download(
                 Ok(file("application/toml", "model.toml", step.toml.clone()))
             }
             "report.html" => {
-                let page = report(&session, &saved)?;
+                let page = report(&session, &session.view())?;
                 Ok(file("text/html; charset=utf-8", "report.html", page))
             }
+            MOTION_FILE => {
+                let view = session.view();
+                let motion = view.proposal().and_then(|found| found.motion_csv.clone());
+                let motion = motion.ok_or(LabError::NotFound("motion"))?;
+                Ok(file("text/csv; charset=utf-8", MOTION_FILE, motion))
+            }
             "session.json" => {
-                let text = serde_json::to_string_pretty(&saved).unwrap_or_default();
-                Ok(file("application/json", "session.json", text))
+                let text = serde_json::to_string_pretty(&session.to_file(saved));
+                Ok(file(
+                    "application/json",
+                    "session.json",
+                    text.unwrap_or_default(),
+                ))
             }
             _ => Err(LabError::NotFound("file")),
         }
@@ -36,7 +47,8 @@ pub(super) async fn download(
     .await
 }
 
-/// The page that `handstand compare --report` writes of the steps up to the present one.
+/// The page that `handstand compare --report` writes of the steps up to the present one, titled by
+/// the diagnosis, with the values that were fitted and what a person wrote down.
 fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError> {
     let mut comparisons = Vec::new();
     let mut model_files = Vec::new();
@@ -56,10 +68,11 @@ fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError
             side.push(motion.clone());
         }
     }
-    Ok(html(&Report {
-        title: format!("{} against measured motions", comparisons[0].model),
+    let report = Report {
+        title: pages::title(saved),
         comparisons,
         diagnosis: None,
         provenance: ReportProvenance::new(model_files, &split, saved.compare_command()),
-    }))
+    };
+    Ok(html_with(&report, pages::sections(saved)))
 }

@@ -5,9 +5,10 @@ use crate::error::{Error, Result};
 use crate::lab::pages::gains as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, download, page};
 use crate::lab::server::LabState;
-use crate::lab::session::LabSession;
+use crate::lab::session::{LabSession, aside, in_degrees};
 use crate::model::Model;
 use crate::output::number::hex;
+use crate::report::verification_text;
 use crate::study::{left_out, response, verify};
 use crate::synth::export::{self, Provenance};
 use crate::synth::{Design, Request, Time, Weight, rows};
@@ -40,9 +41,6 @@ pub(super) struct GainsAsked {
     ts_s: f64,
     /// Delay of the inputs, s; the model's own without.
     delay_s: Option<f64>,
-    /// Whether to find the region of attraction, which takes seconds.
-    #[serde(default)]
-    region: bool,
 }
 
 impl GainsAsked {
@@ -104,13 +102,6 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
     let mut start = vec![0.0; model.link_count()];
     start[0] = LEAN_RAD;
     let response = response(model, &design, &request, &start, SECONDS)?;
-    let verified = match asked.region {
-        true => {
-            let left_out = left_out(model, model, &design);
-            Some(verify(model, &design, &request, &left_out, &|| ())?)
-        }
-        false => None,
-    };
     let fixed = design.fixed.as_ref().map(|fixed| {
         json!({
             "radius": fixed.loss.radius,
@@ -129,17 +120,40 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
         "inputs": design.inputs.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
         "fixed": fixed,
         "omitted": omitted.map(|o| o.effect.info().title).collect::<Vec<_>>(),
+        "degrees": (0..model.link_count()).all(|joint| in_degrees(model, joint)),
         "response": {
             "time_s": response.time_s,
             "angle_rad": response.angle_rad,
             "command": response.command,
         },
-        "region_rad": verified.as_ref().map(|v| v.region_rad),
-        "region_open": verified.as_ref().map(|v| v.region_open),
-        "stays_uncontrolled": verified.as_ref().map(|v| v.stays_uncontrolled),
-        "stabilised": verified.as_ref().map(|v| v.stabilised),
         "command": made.command,
     }))
+}
+
+/// What the simulated loop does with every effect of the model, in the words of `handstand gains`;
+/// it takes seconds.
+pub(super) async fn verified(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Json(asked): Json<GainsAsked>,
+) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || {
+        let (model, _) = model(&session, asked)?;
+        let request = asked.request(&model)?;
+        let design = Design::of(&model, &request).map_err(Error::from)?;
+        let left_out = left_out(&model, &model, &design);
+        let verified = aside(|| verify(&model, &design, &request, &left_out, &|| ()))?;
+        let text = verification_text(&verified, model.slides());
+        let lines: Vec<&str> = text.lines().filter(|line| !line.is_empty()).collect();
+        Ok(reply(&json!({
+            "lines": lines,
+            "stabilised": verified.stabilised,
+            "stays_uncontrolled": verified.stays_uncontrolled,
+            "region_rad": verified.region_rad,
+        })))
+    })
+    .await
 }
 
 /// The law as a header, or for other programs.

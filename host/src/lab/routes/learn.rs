@@ -1,11 +1,12 @@
 //! Learning: the diagnosis and fits as work in the background, steps, notes.
 
+use super::shown_model::ShownModel;
 use super::{act, blocking, session};
 use crate::error::Result;
 use crate::lab::pages::learn as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{JobReport, LabSession};
+use crate::lab::session::{JobReport, LabSession, aside};
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::response::sse::{Event, KeepAlive, Sse};
@@ -26,14 +27,22 @@ pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u3
     blocking(move || Ok(page(pages::page(&session)?))).await
 }
 
+/// The errors of all steps over whole motions, which is how a model is used.
+pub(super) async fn whole(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    let session = session(&lab, number)?;
+    blocking(move || Ok(page(aside(|| pages::whole(&session))))).await
+}
+
 /// Begins work that goes on after the answer.
-fn begin(
+pub(super) fn begin(
     lab: &LabState,
     number: u32,
+    shown: &ShownModel,
     what: &str,
     work: impl FnOnce(&LabSession, &JobReport) -> Result<()> + Send + 'static,
 ) -> Answer {
     let session = session(lab, number)?;
+    shown.check(&session.saved())?;
     let Some(report) = session.job.begin(what) else {
         return Err(LabError::Conflict(
             "something else is running: wait for its end, or stop it".into(),
@@ -46,8 +55,12 @@ fn begin(
 }
 
 /// Begins a diagnosis.
-pub(super) async fn diagnose(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
-    begin(&lab, number, "diagnosis", LabSession::diagnose)
+pub(super) async fn diagnose(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    shown: ShownModel,
+) -> Answer {
+    begin(&lab, number, &shown, "diagnosis", LabSession::diagnose)
 }
 
 #[derive(Debug, Deserialize)]
@@ -70,24 +83,34 @@ impl Names {
 pub(super) async fn add(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
+    shown: ShownModel,
     Json(names): Json<Names>,
 ) -> Answer {
     let list = names.list();
-    begin(&lab, number, "fit of the effect", move |session, report| {
-        session.add_to_model(report, &list)
-    })
+    begin(
+        &lab,
+        number,
+        &shown,
+        "fit of the effect",
+        move |session, report| session.add_to_model(report, &list),
+    )
 }
 
 /// Begins to fit values.
 pub(super) async fn fit(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
+    shown: ShownModel,
     Json(names): Json<Names>,
 ) -> Answer {
     let list = names.list();
-    begin(&lab, number, "fit of the values", move |session, report| {
-        session.fit_values(report, &list)
-    })
+    begin(
+        &lab,
+        number,
+        &shown,
+        "fit of the values",
+        move |session, report| session.fit_values(report, &list),
+    )
 }
 
 /// Stops what runs.
@@ -120,9 +143,11 @@ pub(super) struct StepChosen {
 pub(super) async fn step(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
+    shown: ShownModel,
     Json(chosen): Json<StepChosen>,
 ) -> Answer {
-    act(lab, number, "learn", move |session, _| {
+    act(lab, number, "learn", move |session, saved| {
+        shown.check(saved)?;
         Ok(session.go_to_step(chosen.step)?)
     })
     .await

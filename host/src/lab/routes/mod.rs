@@ -9,7 +9,10 @@ mod enter;
 mod gains;
 mod learn;
 mod live;
+mod new_model;
+mod next;
 mod robot;
+mod shown_model;
 mod what_if;
 
 use super::assets::asset;
@@ -38,8 +41,9 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/upload", post(data::upload))
         .route("/s/{number}/example", post(data::example))
         .route("/s/{number}/log", post(data::log))
+        .route("/s/{number}/divide", post(data::divide))
         .route("/s/{number}/model", post(data::model))
-        .route("/s/{number}/new-model", post(data::new_model))
+        .route("/s/{number}/new-model", post(new_model::make))
         .route("/s/{number}/columns", post(data::columns))
         .route("/s/{number}/raw", get(data::raw))
         .route("/s/{number}/compare", get(compare::show))
@@ -52,6 +56,8 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/diagnose", post(learn::diagnose))
         .route("/s/{number}/add", post(learn::add))
         .route("/s/{number}/fit", post(learn::fit))
+        .route("/s/{number}/next", post(next::propose))
+        .route("/s/{number}/whole", get(learn::whole))
         .route("/s/{number}/stop", post(learn::stop))
         .route("/s/{number}/progress", get(learn::progress))
         .route("/s/{number}/step", post(learn::step))
@@ -67,11 +73,18 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/live/here", post(live::here))
         .route("/s/{number}/live/stop", post(live::stop))
         .route("/s/{number}/gains", get(gains::show).post(gains::design))
+        .route("/s/{number}/verified", post(gains::verified))
         .route("/s/{number}/gains-file/{what}", get(gains::file))
         .route("/s/{number}/challenge", get(challenge::show))
         .route("/s/{number}/round", post(challenge::begin))
         .route("/s/{number}/hand-in", post(challenge::hand_in))
+        .fallback(nowhere)
         .layer(DefaultBodyLimit::max(MOST_FORM_BYTES))
+}
+
+/// What no address leads to.
+async fn nowhere() -> LabError {
+    LabError::NotFound("page")
 }
 
 /// A session by its number; from now on it is somebody's.
@@ -102,8 +115,21 @@ async fn act(
     page: &'static str,
     action: impl FnOnce(&LabSession, &SavedSession) -> Result<(), LabError> + Send + 'static,
 ) -> Answer {
+    act_and_go(lab, number, move |session, saved| {
+        action(session, saved)?;
+        Ok(page)
+    })
+    .await
+}
+
+/// Does something to a session that says on which page to go on.
+async fn act_and_go(
+    lab: Arc<LabState>,
+    number: u32,
+    action: impl FnOnce(&LabSession, &SavedSession) -> Result<&'static str, LabError> + Send + 'static,
+) -> Answer {
     let session = session(&lab, number)?;
-    blocking(move || {
+    let page = blocking(move || {
         let saved = session.saved();
         action(&session, &saved).map_err(|error| match error {
             LabError::Library(inner) => said_shortly(&session, inner),

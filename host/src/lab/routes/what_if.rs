@@ -1,6 +1,7 @@
 //! What if a value were another one: curves and error while a slider moves.
 
 use super::arrays::Arrays;
+use super::shown_model::ShownModel;
 use super::{act, blocking, session};
 use crate::compare::ModelRun;
 use crate::error::{Error, Result};
@@ -8,8 +9,9 @@ use crate::fitting::Candidate;
 use crate::lab::pages::what_if as pages;
 use crate::lab::reply::{Answer, LabError, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{SavedStep, pooled_rms};
+use crate::lab::session::{SavedStep, listed, pooled_rms, value_name};
 use crate::model::{Model, ParameterPath, edit};
+use crate::output::number::{exact, with_unit};
 use axum::Json;
 use axum::extract::{Path, State};
 use serde::Deserialize;
@@ -67,6 +69,19 @@ impl TriedChange {
         Ok((tried, added))
     }
 
+    /// What was done, in words: "set by hand: mass of link 1 to 0.2 kg".
+    fn title(&self, with: &Model) -> String {
+        let set = self.values.iter().map(|(address, value)| {
+            let path = address.parse::<ParameterPath>().ok();
+            let unit = path.filter(|path| path.get(with).is_some());
+            let unit = unit.map_or("", |path| path.unit());
+            let value = with_unit(&exact(*value), unit);
+            format!("{} to {value}", value_name(address))
+        });
+        let set: Vec<String> = set.collect();
+        format!("set by hand: {}", listed(&set))
+    }
+
     fn paths(&self) -> Result<Vec<(ParameterPath, f64)>> {
         let values = self.values.iter();
         values
@@ -79,11 +94,13 @@ impl TriedChange {
 pub(super) async fn run(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
+    shown: ShownModel,
     Json(tried): Json<TriedChange>,
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let saved = session.saved();
+        let saved = session.view();
+        shown.check(&saved)?;
         let base = session.evaluation(&saved, saved.current)?;
         let base = base.ok_or(LabError::NotFound("comparison"))?;
         let (model, _) = tried.applied_to(&base.run.model)?;
@@ -101,7 +118,7 @@ pub(super) async fn run(
         {
             arrays.push(format!("other_{joint}"), angles.iter().copied());
         }
-        Ok(arrays.reply(&json!({ "rms": pooled_rms(&run) })))
+        Ok(arrays.reply(&json!({ "rms": pooled_rms(&run), "error": base.shown_error() })))
     })
     .await
 }
@@ -110,9 +127,11 @@ pub(super) async fn run(
 pub(super) async fn keep(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
+    shown: ShownModel,
     Json(tried): Json<TriedChange>,
 ) -> Answer {
     act(lab, number, "learn", move |session, saved| {
+        shown.check(saved)?;
         let file = std::path::Path::new("model.toml");
         let step = saved.step().ok_or(LabError::NotFound("model"))?;
         let model = Model::parse(&step.toml, file)?;
@@ -131,16 +150,7 @@ pub(super) async fn keep(
                 toml = edit::add_effect(&toml, file, instance, None)?;
             }
         }
-        let names = tried
-            .values
-            .iter()
-            .map(|(path, value)| format!("{path} = {value}"));
-        Ok(session.push_step(SavedStep {
-            title: format!("by hand: {}", names.collect::<Vec<_>>().join(", ")),
-            toml,
-            command: None,
-            note: String::new(),
-        })?)
+        Ok(session.push_step(SavedStep::by_hand(tried.title(&with), toml))?)
     })
     .await
 }

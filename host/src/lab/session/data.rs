@@ -1,11 +1,15 @@
 //! Bringing data: logs into the session's folder, a model in force, what the check finds.
 
 use super::LabSession;
+use super::bring::MODEL_ENDINGS;
 use super::saved::{SavedLog, SavedSession, SavedStep};
 use crate::error::{Error, Result};
 use crate::log::{LogFormat, LogRequest, LogSet, RawLog, Split, split};
 use crate::model::Model;
+use crate::output::number::hex;
 use crate::output::write_new_bytes;
+use serde::Deserialize;
+use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
 
 /// Most bytes of a log.
@@ -15,13 +19,13 @@ const MOST_LOGS: usize = 64;
 /// Longest file name, characters.
 const LONGEST_NAME: usize = 80;
 
-/// What a log holds, as far as it can be read.
-#[derive(Debug, Clone)]
-pub struct LogFacts {
-    /// The log.
-    pub log: SavedLog,
-    /// Motions and samples by the model in force, or why it cannot be read.
-    pub content: std::result::Result<(usize, usize, f64), (String, String)>,
+/// A part of a file that is a log by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct LogPart {
+    /// First and last data row, counted from 0; all without.
+    pub rows: Option<(usize, usize)>,
+    /// Whether it judges and is not fitted.
+    pub held_out: bool,
 }
 
 impl LabSession {
@@ -84,25 +88,59 @@ impl LabSession {
     /// # Errors
     /// As [`LabSession::change`].
     pub fn take_log(&self, file: &str) -> Result<()> {
+        self.take_rows(file, None)
+    }
+
+    /// Takes these rows of a file of the session as a log; all of them without. A log of that name
+    /// that the session lacked keeps its role.
+    pub(super) fn take_rows(&self, file: &str, rows: Option<(usize, usize)>) -> Result<()> {
+        let sha256 = self.sha256_of(file)?;
         self.change(|saved| {
-            saved.logs.push(SavedLog {
-                file: file.to_string(),
-                rows: None,
-                held_out: false,
-            });
-            saved.diagnosis = None;
+            let lacked = saved.logs.iter_mut().filter(|log| log.file == file);
+            let lacked = lacked.map(|log| log.sha256.clone_from(&sha256)).count();
+            if lacked == 0 {
+                saved.logs.push(SavedLog {
+                    file: file.to_string(),
+                    rows,
+                    held_out: false,
+                    sha256,
+                });
+            }
             Ok(())
         })
     }
 
-    /// Takes a log out; its file stays in the folder.
+    /// SHA-256 of a log's bytes, in hexadecimal.
+    fn sha256_of(&self, file: &str) -> Result<String> {
+        let path = self.log_path(file);
+        let refused = |why| Error::file(&path, "read", why);
+        let mut log = std::fs::File::open(&path).map_err(refused)?;
+        let mut hash = Sha256::new();
+        std::io::copy(&mut log, &mut hash).map_err(refused)?;
+        Ok(hex(hash.finalize()))
+    }
+
+    /// Fills in what a session of an earlier version of the program did not keep.
+    pub(super) fn take_up(&self, saved: &mut SavedSession) {
+        for log in saved.logs.iter_mut().filter(|log| log.sha256.is_empty()) {
+            // A log that is gone is said to be where logs are listed.
+            log.sha256 = self.sha256_of(&log.file).unwrap_or_default();
+        }
+        if let (true, Some(said)) = (saved.kept.is_empty(), saved.diagnosis.clone())
+            && let Some(of) = saved.files_of(said.step)
+        {
+            saved.keep_diagnosis(of, said);
+        }
+        saved.recall();
+    }
+
+    /// Takes a log out, by its name with its rows; its file stays in the folder.
     ///
     /// # Errors
     /// As [`LabSession::change`].
-    pub fn remove_log(&self, file: &str) -> Result<()> {
+    pub fn remove_log(&self, name: &str) -> Result<()> {
         self.change(|saved| {
-            saved.logs.retain(|log| log.file != file);
-            saved.diagnosis = None;
+            saved.logs.retain(|log| log.name() != name);
             Ok(())
         })
     }
@@ -111,11 +149,46 @@ impl LabSession {
     ///
     /// # Errors
     /// As [`LabSession::change`].
-    pub fn hold_out(&self, file: &str, held_out: bool) -> Result<()> {
+    pub fn hold_out(&self, name: &str, held_out: bool) -> Result<()> {
         self.change(|saved| {
-            let logs = saved.logs.iter_mut().filter(|log| log.file == file);
+            let logs = saved.logs.iter_mut().filter(|log| log.name() == name);
             logs.for_each(|log| log.held_out = held_out);
-            saved.diagnosis = None;
+            Ok(())
+        })
+    }
+
+    /// Divides a file's rows into parts, in place of the logs that there are of it; a single part
+    /// without rows is the whole file again.
+    ///
+    /// # Errors
+    /// Rows that the file has not or that run backwards; a file that is none of the session's.
+    pub fn divide_log(&self, file: &str, parts: &[LogPart]) -> Result<()> {
+        let rows = RawLog::read(&self.log_path(file))?
+            .columns
+            .first()
+            .map_or(0, Vec::len);
+        let fits = |part: &LogPart| {
+            part.rows
+                .is_none_or(|(first, last)| first <= last && last < rows)
+        };
+        if parts.is_empty() || parts.len() > MOST_LOGS || !parts.iter().all(fits) {
+            return Err(Error::usage(
+                format!("these are no parts of the {rows} rows of {file}"),
+                "select a stretch of the chart again",
+            ));
+        }
+        self.change(|saved| {
+            let own = saved.logs.iter().position(|log| log.file == file);
+            let at = own.ok_or_else(|| Error::usage("there is no such log", "reload the page"))?;
+            let sha256 = saved.logs[at].sha256.clone();
+            saved.logs.retain(|log| log.file != file);
+            let parts = parts.iter().map(|part| SavedLog {
+                file: file.to_string(),
+                rows: part.rows,
+                held_out: part.held_out,
+                sha256: sha256.clone(),
+            });
+            saved.logs.splice(at..at, parts);
             Ok(())
         })
     }
@@ -127,14 +200,8 @@ impl LabSession {
     pub fn begin_model(&self, title: &str, toml: &str) -> Result<()> {
         Model::parse(toml, Path::new("model-0.toml"))?;
         self.change(|saved| {
-            saved.steps = vec![SavedStep {
-                title: title.to_string(),
-                toml: toml.to_string(),
-                command: None,
-                note: String::new(),
-            }];
+            saved.steps = vec![SavedStep::by_hand(title, toml)];
             saved.current = 0;
-            saved.diagnosis = None;
             Ok(())
         })?;
         self.write_models()
@@ -179,34 +246,6 @@ impl LabSession {
         let parse = |toml: &str| Model::parse(toml, &model_file(saved.current));
         saved.step().map(|step| parse(&step.toml)).transpose()
     }
-
-    /// What each log holds by the model in force.
-    pub fn log_facts(&self, saved: &SavedSession, model: Option<&Model>) -> Vec<LogFacts> {
-        let facts = |log: &SavedLog| {
-            let request = LogRequest {
-                path: self.log_path(&log.file),
-                rows: log.rows,
-            };
-            let content = match model {
-                None => Err(("no model reads it yet".into(), String::new())),
-                Some(model) => crate::log::read(&[request], &model.log)
-                    .map(|motions| {
-                        let samples = motions.iter().map(|m| m.len()).sum();
-                        let seconds = motions.iter().map(|m| m.duration_s()).sum();
-                        (motions.len(), samples, seconds)
-                    })
-                    .map_err(|error| {
-                        let remedy = error.remedy().unwrap_or_default().into_owned();
-                        (self.shortened(&error.to_string()), remedy)
-                    }),
-            };
-            LogFacts {
-                log: log.clone(),
-                content,
-            }
-        };
-        saved.logs.iter().map(facts).collect()
-    }
 }
 
 /// Name of a step's model file.
@@ -229,7 +268,11 @@ fn plain_name(name: &str) -> Result<String> {
         let endings: Vec<&str> = LogFormat::endings().collect();
         return Err(Error::usage(
             format!("`{last}` is no log that can be read"),
-            format!("bring a file that ends in {}", endings.join(", ")),
+            format!(
+                "bring a log that ends in {}, a model that ends in {}, or a saved session",
+                endings.join(", "),
+                MODEL_ENDINGS.join(", ")
+            ),
         ));
     }
     let stem: String = stem.chars().take(LONGEST_NAME).collect();

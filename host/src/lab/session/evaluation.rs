@@ -7,6 +7,8 @@ use crate::compare::{Comparison, FailingSamples, ModelRun};
 use crate::error::Result;
 use crate::fitting::{FitData, Horizon};
 use crate::model::{MeasuredSignal, Model};
+use crate::output::number::{given, short};
+use serde::Serialize;
 use std::path::Path;
 use std::sync::{Arc, MutexGuard, OnceLock, PoisonError};
 
@@ -85,10 +87,93 @@ impl SessionEvaluation {
         self.run.data.quantity()
     }
 
+    /// The unit in which people read a joint's values.
+    pub fn shown(&self, joint: usize) -> ShownUnit {
+        ShownUnit::of(
+            self.run.data.signals[joint],
+            in_degrees(&self.run.model, joint),
+        )
+    }
+
+    /// The unit in which people read the errors of all joints together.
+    pub fn shown_error(&self) -> ShownUnit {
+        let model = &self.run.model;
+        let degrees = (0..model.link_count()).all(|joint| in_degrees(model, joint));
+        ShownUnit::of(self.quantity(), degrees)
+    }
+
+    /// An error of all joints together as people read it.
+    pub fn in_words(&self, error: f64) -> String {
+        self.shown_error().error_words(error)
+    }
+
+    /// How long the model ran: "over whole motions", "over 0.25 s".
+    pub fn over(&self) -> String {
+        over(self.run.horizon)
+    }
+
     /// Whether a motion is held out.
     pub fn is_held_out(&self, motion: usize) -> bool {
         motion >= self.fitted
     }
+}
+
+/// How long models run, in words.
+pub fn over(horizon: Horizon) -> String {
+    match horizon {
+        Horizon::Whole => "over whole motions".into(),
+        Horizon::Seconds(seconds) => format!("over {} s", given(seconds)),
+    }
+}
+
+/// The unit in which people read values: degrees where the log has degrees.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ShownUnit {
+    /// Of values.
+    pub unit: &'static str,
+    /// How many of them one SI unit is.
+    pub per_si: f64,
+    /// Of errors.
+    pub error_unit: &'static str,
+    /// How many of those one SI unit is.
+    pub error_per_si: f64,
+}
+
+impl ShownUnit {
+    fn of(signal: MeasuredSignal, degrees: bool) -> ShownUnit {
+        let unit = match signal {
+            MeasuredSignal::Angle if degrees => "deg",
+            MeasuredSignal::Rate if degrees => "deg/s",
+            _ => {
+                return ShownUnit {
+                    unit: signal.unit(),
+                    per_si: 1.0,
+                    error_unit: signal.milli(),
+                    error_per_si: 1e3,
+                };
+            }
+        };
+        let per_si = 1f64.to_degrees();
+        ShownUnit {
+            unit,
+            per_si,
+            error_unit: unit,
+            error_per_si: per_si,
+        }
+    }
+
+    /// A number with its unit.
+    pub fn error_words(&self, error: f64) -> String {
+        format!("{} {}", short(self.error_per_si * error), self.error_unit)
+    }
+}
+
+/// Whether a joint's angle, or its speed where that is all there is, is logged in degrees.
+pub fn in_degrees(model: &Model, joint: usize) -> bool {
+    let log = &model.log.joints[joint];
+    let measured = log.position.as_ref().or(log.velocity.as_ref());
+    let first = measured.and_then(|mean| mean.columns().first());
+    first.is_some_and(|column| column.unit.name.starts_with("deg"))
 }
 
 /// Root-mean-square error over the joints whose errors count together, as the bars of a report
@@ -173,7 +258,10 @@ impl LabSession {
 
     fn evaluate(&self, saved: &SavedSession, toml: &str, file: &Path) -> Result<SessionEvaluation> {
         let model = Model::parse(toml, file)?;
-        let split = self.split(saved, &model)?;
+        let split = match self.take_motions(saved, &model) {
+            Some(split) => split,
+            None => self.split(saved, &model)?,
+        };
         let fitted = split.training.len();
         let motions = [split.training, split.held_out].concat();
         let horizon = saved.horizon();

@@ -65,7 +65,7 @@ impl LabSession {
             self.add_log(name, text.as_bytes())?;
         }
         match self.saved().logs.last() {
-            Some(last) => self.hold_out(&last.file, true),
+            Some(last) => self.hold_out(&last.name(), true),
             None => Ok(()),
         }
     }

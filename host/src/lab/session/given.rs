@@ -1,29 +1,53 @@
 //! What the command line gives a new session.
 
 use super::LabSession;
-use super::saved::SavedLog;
+use super::bring::{is_model, model_step};
+use super::saved::SavedStep;
 use crate::error::{Error, Result};
-use crate::log::LogRequest;
-use crate::model::Model;
-use std::path::PathBuf;
+use crate::log::{LogFormat, LogRequest};
+use std::path::{Path, PathBuf};
+
+fn text(file: &Path) -> Result<String> {
+    std::fs::read_to_string(file).map_err(|why| Error::file(file, "read", why))
+}
 
 /// A model and logs, as files.
 #[derive(Debug, Clone, Default)]
 pub struct Given {
-    /// Model file.
+    /// Model file: TOML, URDF or MJCF.
     pub model: Option<PathBuf>,
     /// Logs.
     pub logs: Vec<LogRequest>,
 }
 
 impl Given {
+    /// Files as they stand on a command line: a model, first or known by its ending, and logs.
+    ///
+    /// # Errors
+    /// Two models.
+    pub fn of(files: &[LogRequest]) -> Result<Given> {
+        let mut given = Given::default();
+        for (index, file) in files.iter().enumerate() {
+            let unknown = !LogFormat::is_log(&file.path);
+            if !(is_model(&file.path) || index == 0 && unknown) {
+                given.logs.push(file.clone());
+            } else if let Some(first) = given.model.replace(file.path.clone()) {
+                return Err(Error::usage(
+                    format!("{} and {file} are two models", first.display()),
+                    "begin with one of them, and drop the other into the page",
+                ));
+            }
+        }
+        Ok(given)
+    }
+
     /// Reads them once, so that what is wrong is said before a browser opens.
     ///
     /// # Errors
     /// Files that cannot be read, a model that is none.
     pub fn check(&self) -> Result<()> {
         if let Some(file) = &self.model {
-            Model::load(file)?;
+            model_step(file, &text(file)?)?;
         }
         for log in &self.logs {
             std::fs::File::open(&log.path).map_err(|why| Error::file(&log.path, "read", why))?;
@@ -39,24 +63,18 @@ impl LabSession {
     /// Files that cannot be read or written.
     pub fn bring(&self, given: &Given) -> Result<()> {
         if let Some(file) = &given.model {
-            let text =
-                std::fs::read_to_string(file).map_err(|why| Error::file(file, "read", why))?;
-            self.begin_model("as given", &text)?;
+            let step = SavedStep {
+                title: "as given".into(),
+                ..model_step(file, &text(file)?)?
+            };
+            self.push_step(step)?;
         }
         for log in &given.logs {
             let bytes =
                 std::fs::read(&log.path).map_err(|why| Error::file(&log.path, "read", why))?;
             let name = LogRequest::whole(&log.path).name();
             let file = self.keep_log(&name, &bytes)?;
-            let rows = log.rows;
-            self.change(|saved| {
-                saved.logs.push(SavedLog {
-                    file,
-                    rows,
-                    held_out: false,
-                });
-                Ok(())
-            })?;
+            self.take_rows(&file, log.rows)?;
         }
         Ok(())
     }

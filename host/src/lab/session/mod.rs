@@ -1,36 +1,52 @@
 //! A session: the logs, the models one after the other, and what is running.
 
 mod aside;
+mod bring;
 mod card;
 mod commands;
 mod data;
 mod evaluation;
 mod example;
+mod facts;
+mod file;
 mod findings;
 mod given;
 mod job;
+mod kept;
+mod names;
+mod propose;
 mod round;
 mod saved;
 mod steps;
 mod store;
+mod view;
 mod work;
 
 pub use aside::aside;
+pub(super) use bring::{MODEL_ENDINGS, is_model};
 pub(super) use card::{CardRole, SavedCard, SavedDiagnosis};
-pub(super) use data::{LogFacts, MOST_BYTES};
-pub(super) use evaluation::{SessionEvaluation, pooled_rms};
+pub(super) use data::{LogPart, MOST_BYTES};
+pub(super) use evaluation::{SessionEvaluation, in_degrees, over, pooled_rms};
 pub(super) use example::EXAMPLES;
+pub(super) use facts::LogFacts;
+pub(super) use file::SessionFile;
 pub use given::Given;
 pub(super) use job::{JobReport, JobSlot};
+pub(super) use kept::{SavedProposal, model_sha256};
+pub(super) use names::{effect_name, effect_of, listed, value_name};
+pub(super) use propose::MOTION_FILE;
 pub(super) use round::{Round, RoundResult};
-pub(super) use saved::{ChosenWindow, SavedSession, SavedStep};
+pub(super) use saved::{ChosenWindow, SavedSession, SavedStep, SavedValue};
 pub(super) use store::SessionStore;
 
+use crate::diagnose::Diagnosis;
 use crate::error::Result;
 use evaluation::Evaluations;
 use findings::KnownFindings;
+use kept::DiagnosedFiles;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use view::Readings;
 
 /// One session.
 #[derive(Debug)]
@@ -43,6 +59,9 @@ pub(super) struct LabSession {
     /// Held while an evaluation is made: who wants the same one waits for it.
     evaluating: Mutex<()>,
     findings: Mutex<KnownFindings>,
+    readings: Mutex<Readings>,
+    /// The last diagnosis as a whole, which a proposal of the next experiment begins with.
+    diagnosed: Mutex<Option<(DiagnosedFiles, Diagnosis)>>,
     /// What is running.
     pub job: JobSlot,
 }
@@ -56,6 +75,8 @@ impl LabSession {
             evaluations: Mutex::default(),
             evaluating: Mutex::default(),
             findings: Mutex::default(),
+            readings: Mutex::default(),
+            diagnosed: Mutex::default(),
             job: JobSlot::default(),
         }
     }
@@ -66,7 +87,9 @@ impl LabSession {
     /// As [`SavedSession::load`].
     pub fn load(number: u32, folder: PathBuf) -> Result<LabSession> {
         let session = LabSession::new(number, folder);
-        *session.lock() = SavedSession::load(&session.folder)?;
+        let mut saved = SavedSession::load(&session.folder)?;
+        session.take_up(&mut saved);
+        *session.lock() = saved;
         Ok(session)
     }
 
@@ -89,6 +112,7 @@ impl LabSession {
         let mut saved = self.lock();
         let mut next = saved.clone();
         let value = change(&mut next)?;
+        next.recall();
         next.save(&self.folder)?;
         *saved = next;
         Ok(value)
@@ -108,5 +132,10 @@ impl LabSession {
         let folder = format!("{}/", self.folder.display());
         text.replace(&format!("{folder}logs/"), "")
             .replace(&folder, "")
+    }
+
+    /// Commands as they are typed in the session's folder.
+    fn typed_here(&self, text: &str) -> String {
+        text.replace(&format!("{}/", self.folder.display()), "")
     }
 }

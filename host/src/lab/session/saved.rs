@@ -1,9 +1,12 @@
 //! What a session keeps on disk: `session.json`, written whole or not at all.
 
 use super::card::SavedDiagnosis;
+use super::kept::KeptDiagnosis;
 use super::round::Round;
+use super::view::LeftOutLog;
 use crate::error::{Error, Place, Result};
-use crate::fitting::Horizon;
+use crate::fitting::{FittedValue, Horizon};
+use crate::log::LogRequest;
 use crate::output::write_new;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -24,10 +27,16 @@ pub struct SavedSession {
     pub current: usize,
     /// How long models run without correction.
     pub window: ChosenWindow,
-    /// The last diagnosis.
+    /// Every diagnosis that was made, the last one last.
+    #[serde(default)]
+    pub kept: Vec<KeptDiagnosis>,
+    /// The one of them that belongs to the logs and to a model among the steps.
     pub diagnosis: Option<SavedDiagnosis>,
     /// The challenge, in a session that was begun as one.
     pub round: Option<Round>,
+    /// Logs that the model in force cannot read: found anew each time.
+    #[serde(skip)]
+    pub left_out: Vec<LeftOutLog>,
 }
 
 /// How long models run without correction at most.
@@ -63,6 +72,20 @@ pub struct SavedLog {
     pub rows: Option<(usize, usize)>,
     /// Whether it judges and is not fitted.
     pub held_out: bool,
+    /// SHA-256 of its bytes, in hexadecimal.
+    #[serde(default)]
+    pub sha256: String,
+}
+
+impl SavedLog {
+    /// Its name, with the rows where a part is wanted: `drop.csv:26-139`.
+    pub fn name(&self) -> String {
+        LogRequest {
+            path: self.file.clone().into(),
+            rows: self.rows,
+        }
+        .name()
+    }
 }
 
 /// A model, and how it came about.
@@ -76,6 +99,54 @@ pub struct SavedStep {
     pub command: Option<String>,
     /// What a person wrote down.
     pub note: String,
+    /// Values that a fit gave it, with their intervals.
+    #[serde(default)]
+    pub values: Vec<SavedValue>,
+}
+
+/// A fitted value with its 95 % interval, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SavedValue {
+    /// Its address: `coulomb@1.torque_nm`.
+    pub path: String,
+    /// Its unit, for people.
+    pub unit: String,
+    /// Fitted value.
+    pub value: f64,
+    /// Lower end of the interval.
+    pub low: Option<f64>,
+    /// Upper end of the interval.
+    pub high: Option<f64>,
+    /// Whether it lies on a bound: a warning, not a result.
+    pub on_bound: bool,
+}
+
+impl From<&FittedValue> for SavedValue {
+    fn from(fitted: &FittedValue) -> Self {
+        // JSON has no number for what is unbounded.
+        let end = |value: f64| Some(value).filter(|value| value.is_finite());
+        SavedValue {
+            path: fitted.path.clone(),
+            unit: fitted.unit.clone(),
+            value: fitted.value,
+            low: end(fitted.low),
+            high: end(fitted.high),
+            on_bound: fitted.on_bound,
+        }
+    }
+}
+
+impl SavedStep {
+    /// A model that a person brought or wrote.
+    pub fn by_hand(title: impl Into<String>, toml: impl Into<String>) -> SavedStep {
+        SavedStep {
+            title: title.into(),
+            toml: toml.into(),
+            command: None,
+            note: String::new(),
+            values: Vec::new(),
+        }
+    }
 }
 
 impl Default for SavedSession {
@@ -86,8 +157,10 @@ impl Default for SavedSession {
             steps: Vec::new(),
             current: 0,
             window: ChosenWindow::Automatic,
+            kept: Vec::new(),
             diagnosis: None,
             round: None,
+            left_out: Vec::new(),
         }
     }
 }
@@ -111,10 +184,15 @@ impl SavedSession {
         };
         let saved: SavedSession =
             serde_json::from_str(&text).map_err(|error| broken(error.to_string()))?;
-        if saved.version != VERSION || saved.current > saved.steps.len().saturating_sub(1) {
-            return Err(broken("another version of this program wrote it".into()));
+        match saved.is_sound() {
+            true => Ok(saved),
+            false => Err(broken("another version of this program wrote it".into())),
         }
-        Ok(saved)
+    }
+
+    /// Whether this version of the program wrote it, and what it names is there.
+    pub fn is_sound(&self) -> bool {
+        self.version == VERSION && self.current <= self.steps.len().saturating_sub(1)
     }
 
     /// Writes the session: a reader, or a crash, finds this one or the one before.

@@ -15,7 +15,10 @@ impl LabSession {
     pub fn push_step(&self, step: SavedStep) -> Result<()> {
         Model::parse(&step.toml, &model_file(0))?;
         self.change(|saved| {
-            saved.steps.truncate(saved.current + 1);
+            // What was undone is gone; the first step takes nothing away.
+            saved
+                .steps
+                .truncate((saved.current + 1).min(saved.steps.len()));
             saved.steps.push(step);
             saved.current = saved.steps.len() - 1;
             Ok(())

@@ -4,14 +4,18 @@ use super::LabSession;
 use super::card::SavedDiagnosis;
 use super::data::model_file;
 use super::job::JobReport;
-use super::saved::{SavedSession, SavedStep};
+use super::kept::DiagnosedFiles;
+use super::names::{effect_name, listed, value_name};
+use super::saved::{SavedSession, SavedStep, SavedValue};
 use crate::diagnose::conventions::ModelFile;
-use crate::diagnose::{DiagnoseOptions, diagnose_logs};
+use crate::diagnose::{DiagnoseOptions, Diagnosis, diagnose_logs};
 use crate::error::{Error, Result};
 use crate::fitting::{
-    Addition, Undetermined, add_effects, candidates_named, free_parameters, refit, with_refitted,
+    Addition, Refitted, Undetermined, add_effects, candidates_named, free_parameters, refit,
+    with_refitted,
 };
 use crate::model::Model;
+use std::sync::PoisonError;
 
 impl LabSession {
     /// Diagnoses the model in force.
@@ -20,31 +24,59 @@ impl LabSession {
     /// Logs that cannot be read; a session that was changed meanwhile.
     pub fn diagnose(&self, report: &JobReport) -> Result<()> {
         let begun = self.saved();
-        let model = self.model_at(&begun)?;
+        let view = self.view_of(begun.clone());
+        let (of, diagnosis) = self.diagnosis_of(report, &view)?;
+        self.keep_diagnosis(&begun, of, &diagnosis)
+    }
+
+    /// The diagnosis of a view's model, and what it is of.
+    pub(super) fn diagnosis_of(
+        &self,
+        report: &JobReport,
+        view: &SavedSession,
+    ) -> Result<(DiagnosedFiles, Diagnosis)> {
+        let model = self.model_at(view)?;
         let options = DiagnoseOptions {
-            horizon: begun.window.by_hand(),
+            horizon: view.window.by_hand(),
             stop: report.stop_switch().clone(),
             ..DiagnoseOptions::default()
         };
-        let (path, logs) = (model_file(begun.current), self.log_set(&begun));
+        let (path, logs) = (model_file(view.current), self.log_set(view));
         let file = ModelFile {
             path: &path,
-            text: self.toml(&begun)?,
+            text: self.toml(view)?,
         };
         let found = diagnose_logs(&model, file, &logs, &options, &|p| report.hear(p))?;
-        let mut said = SavedDiagnosis::of(&found.diagnosis, begun.current);
+        let of = view.files_of(view.current).ok_or_else(no_model)?;
+        Ok((of, found.diagnosis))
+    }
+
+    /// Keeps what a diagnosis said.
+    ///
+    /// # Errors
+    /// A session that was changed meanwhile.
+    pub(super) fn keep_diagnosis(
+        &self,
+        begun: &SavedSession,
+        of: DiagnosedFiles,
+        diagnosis: &Diagnosis,
+    ) -> Result<()> {
+        let mut said = SavedDiagnosis::of(diagnosis, begun.current);
         for line in said.summary.iter_mut().chain(&mut said.warnings) {
             *line = self.shortened(line);
         }
         // Commands are typed in the session's folder.
         for line in &mut said.next {
-            *line = line.replace(&format!("{}/", self.folder().display()), "");
+            *line = self.typed_here(line);
         }
         self.change(|saved| {
-            unchanged(saved, &begun)?;
-            saved.diagnosis = Some(said);
+            unchanged(saved, begun)?;
+            saved.keep_diagnosis(of.clone(), said);
             Ok(())
-        })
+        })?;
+        let known = self.diagnosed.lock();
+        *known.unwrap_or_else(PoisonError::into_inner) = Some((of, diagnosis.clone()));
+        Ok(())
     }
 
     /// Adds effects to the model in force, as a new step.
@@ -53,11 +85,12 @@ impl LabSession {
     /// Effects that the model has or cannot have, or that do not reduce its error.
     pub fn add_to_model(&self, report: &JobReport, names: &[String]) -> Result<()> {
         let begun = self.saved();
-        let model = self.model_at(&begun)?;
+        let view = self.view_of(begun.clone());
+        let model = self.model_at(&view)?;
         let candidates = candidates_named(names, &model)?;
         let (text, file) = (self.toml(&begun)?, model_file(begun.current));
-        let split = self.log_set(&begun).read(&model.log)?;
-        let horizon = begun.horizon();
+        let split = self.log_set(&view).read(&model.log)?;
+        let horizon = view.horizon();
         let added = add_effects(
             text,
             &file,
@@ -66,18 +99,19 @@ impl LabSession {
             Some(horizon),
             &|progress| report.hear(progress),
         )?;
-        let toml = match added {
-            Addition::Added { text, .. } => text,
+        let (toml, values) = match added {
+            Addition::Added { text, refitted } => (text, saved_values(&refitted)),
             Addition::Unhelpful(why) => return Err(Error::usage(why.why(names), why.remedy())),
             Addition::Undetermined(why) => return Err(undetermined(&why)),
         };
         self.keep_step(
             &begun,
             SavedStep {
-                title: format!("{} added", names.join(", ")),
+                title: format!("{} added", listed(&each(names, effect_name))),
                 toml,
-                command: Some(begun.add_command(names)),
+                command: Some(view.add_command(names)),
                 note: String::new(),
+                values,
             },
         )
     }
@@ -89,10 +123,11 @@ impl LabSession {
     /// Values that it has not, or that the motions do not determine.
     pub fn fit_values(&self, report: &JobReport, values: &[String]) -> Result<()> {
         let begun = self.saved();
-        let model = self.model_at(&begun)?;
+        let view = self.view_of(begun.clone());
+        let model = self.model_at(&view)?;
         let free = free_parameters(&model, values)?;
-        let split = self.log_set(&begun).read(&model.log)?;
-        let horizon = Some(begun.horizon());
+        let split = self.log_set(&view).read(&model.log)?;
+        let horizon = Some(view.horizon());
         let refitted = refit(&model, &free, &split, horizon, &|p| report.hear(p))
             .map_err(|why| undetermined(&why))?;
         let file = model_file(begun.current);
@@ -101,10 +136,11 @@ impl LabSession {
         self.keep_step(
             &begun,
             SavedStep {
-                title: format!("{} fitted", names.join(", ")),
+                title: format!("{} fitted", listed(&each(&names, value_name))),
                 toml,
-                command: Some(begun.fit_command(values)),
+                command: Some(view.fit_command(values)),
                 note: String::new(),
+                values: saved_values(&refitted),
             },
         )
     }
@@ -114,15 +150,27 @@ impl LabSession {
         self.push_step(step)
     }
 
-    fn model_at(&self, saved: &SavedSession) -> Result<Model> {
+    pub(super) fn model_at(&self, saved: &SavedSession) -> Result<Model> {
         let model = self.model(saved)?.filter(|_| !saved.logs.is_empty());
         model.ok_or_else(|| Error::usage("a model and a log are needed", "bring them first"))
     }
 
     fn toml<'a>(&self, saved: &'a SavedSession) -> Result<&'a str> {
         let step = saved.step().map(|step| step.toml.as_str());
-        step.ok_or_else(|| Error::usage("there is no model", "bring one first"))
+        step.ok_or_else(no_model)
     }
+}
+
+pub(super) fn no_model() -> Error {
+    Error::usage("there is no model", "bring one first")
+}
+
+fn each(names: &[String], name: fn(&str) -> String) -> Vec<String> {
+    names.iter().map(|each| name(each)).collect()
+}
+
+fn saved_values(refitted: &Refitted) -> Vec<SavedValue> {
+    refitted.values.iter().map(SavedValue::from).collect()
 }
 
 fn undetermined(why: &Undetermined) -> Error {
@@ -132,7 +180,7 @@ fn undetermined(why: &Undetermined) -> Error {
     )
 }
 
-fn unchanged(saved: &SavedSession, begun: &SavedSession) -> Result<()> {
+pub(super) fn unchanged(saved: &SavedSession, begun: &SavedSession) -> Result<()> {
     let key = |s: &SavedSession| (s.logs.clone(), s.current, s.step().cloned());
     match key(saved) == key(begun) {
         true => Ok(()),

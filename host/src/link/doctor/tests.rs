@@ -136,7 +136,7 @@ impl Twins {
         match self.meeting {
             Meeting::AtOnce => one.iter().zip(other).map(|(a, b)| a & b).collect(),
             Meeting::InOneRead => [one, other].concat(),
-            Meeting::InTurn if self.readings % 2 == 0 => one.to_vec(),
+            Meeting::InTurn if self.readings.is_multiple_of(2) => one.to_vec(),
             Meeting::InTurn => other.to_vec(),
         }
     }

@@ -71,3 +71,32 @@ fn what_a_model_has_learned_shows_in_the_response() {
         with["response"]["angle_rad"]
     );
 }
+
+#[test]
+fn the_page_says_what_the_command_says() {
+    let bench = Bench::new();
+    let model = models()
+        .into_iter()
+        .find(|m| m.ends_with("bench_arm.toml"))
+        .unwrap();
+    // Friction that holds the arm in any pose.
+    let text = std::fs::read_to_string(&model).unwrap();
+    bench.put(
+        "arm.toml",
+        text.replace("torque_nm = 0.03", "torque_nm = 0.9"),
+    );
+    let server = Server::start(&bench, "arm.toml");
+    let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
+    let said = server.post("/s/1/verified", &asked).json();
+    let told = bench.run("gains arm.toml --q 100 --r 1 --ts 0.01").stdout;
+    let lines = said["lines"].as_array().unwrap();
+    for line in lines {
+        assert!(told.contains(line.as_str().unwrap()), "{line}:\n{told}");
+    }
+    assert!(said["stays_uncontrolled"] == true, "{said}");
+    assert!(lines.iter().any(|line| {
+        line.as_str()
+            .unwrap()
+            .contains("prove nothing of the gains")
+    }));
+}

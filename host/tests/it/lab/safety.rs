@@ -246,3 +246,34 @@ fn markup_and_what_is_no_number_do_no_harm() {
         422
     );
 }
+
+#[test]
+fn a_browser_that_goes_astray_gets_a_page_with_style() {
+    let bench = Bench::new();
+    let server = Server::start(&bench, "model.toml a.csv");
+    let html = ("Accept", "text/html,application/xhtml+xml");
+    let cookie = ("Cookie", server.cookies.as_str());
+    for (path, status, word) in [
+        ("/s/99/data", 404, "There is no such session"),
+        ("/s/1/nopage", 404, "There is no such page"),
+        ("/s/one/data", 400, "no address of the lab"),
+        ("/s/1/download/next.csv", 404, "There is no such motion"),
+    ] {
+        let page = server.ask("GET", path, &[cookie, html], b"");
+        assert_eq!(page.status, status, "{path}");
+        let text = page.text();
+        assert!(
+            text.contains(word) && text.contains("/assets/lab.css"),
+            "{path}: {text}"
+        );
+        let data = server.ask("GET", path, &[cookie], b"");
+        assert!(!data.text().contains("<html"), "{path}: a script gets data");
+    }
+    // Who is refused gets the style, too; nothing else.
+    let refused = server.ask("GET", "/s/1/data", &[html], b"");
+    assert_eq!(refused.status, 401);
+    assert!(refused.text().contains("/assets/lab.css"));
+    assert_eq!(server.ask("GET", "/assets/lab.css", &[], b"").status, 200);
+    let evil = [("Host", "evil.example")];
+    assert_eq!(server.ask("GET", "/assets/lab.css", &evil, b"").status, 421);
+}

@@ -1,11 +1,11 @@
 //! The verification of a design in words.
 
-use handstand::study::{Verification, Without};
+use crate::study::{Verification, Without};
 
 /// Whether the simulated loop is stabilised, from how far, and what limits it.
 ///
 /// Where joints slide, a spread in rad is as much in m.
-pub fn text(verified: &Verification, slides: bool) -> String {
+pub fn verification_text(verified: &Verification, slides: bool) -> String {
     let also_mm = |rad: f64| match slides {
         true => format!(" and {:.1} mm", 1e3 * rad),
         false => String::new(),
