@@ -21,9 +21,9 @@ mod plot;
 use super::ExitStatus;
 use super::Talk;
 use super::input;
+use handstand::Result;
 use handstand::diagnose::conventions::{self, ModelFile};
 use handstand::log::{LogFinding, LogRequest, Severity};
-use handstand::{Model, Result};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -84,7 +84,7 @@ fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
 /// # Errors
 /// A model file that is refused, and what the system refuses.
 pub fn findings(logs: &[LogRequest], file: &Path) -> Result<Vec<LogFinding>> {
-    let model = Model::load(file)?;
+    let model = input::model(file)?;
     let text = input::text(file)?;
     let file = ModelFile {
         path: file,

@@ -104,7 +104,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     for effect in &args.without {
         effect_named(effect)?;
     }
-    let mut model = Model::load(&args.model)?;
+    let mut model = input::model(&args.model)?;
     model.hinges_only("proposed motions are for servos that turn")?;
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));

@@ -2,14 +2,17 @@
 
 mod bam;
 pub(crate) mod cdr;
+mod cell;
 pub mod check;
 mod csv;
 mod folder;
+mod foreign;
 mod format;
 mod header;
 mod holdout;
 pub mod init;
 mod iso;
+mod layout;
 mod lines;
 mod log_set;
 pub(crate) mod mcap_messages;
@@ -33,6 +36,7 @@ mod write;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use bam::BenchFigures;
 pub use check::{LogFinding, Proof, Severity, check};
 pub use folder::{expanded, unfolded};
 pub use format::LogFormat;

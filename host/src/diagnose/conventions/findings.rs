@@ -7,7 +7,7 @@ use super::trial::Trial;
 use crate::error::{Place, Result};
 use crate::log::{LogFinding, Motion, Proof, Severity};
 use crate::model::edit::{changed_lines, set_reading};
-use crate::model::{AngleZero, Angles, Dimension, Model, Unit};
+use crate::model::{AngleZero, Angles, Dimension, JointColumns, MeasuredSignal, Model, Unit};
 use std::path::Path;
 
 /// A model's file: its path, for messages, and its text.
@@ -31,7 +31,7 @@ pub(super) fn finding(found: &Found, model: &Model, file: ModelFile) -> Result<L
         kind: kind(&trial.remedy),
         severity: severity(&trial.remedy),
         place: Some(Place::file(file.path)),
-        what: format!("{}; {}", what(&trial.remedy, model), proof(trial)),
+        what: format!("{}; {}", what(&trial.remedy, model), proof(trial, model)),
         remedy: remedies.join("; or, which lowers the error as far, "),
         proof: Some(Proof {
             before_rad: trial.before_rad,
@@ -159,15 +159,22 @@ fn written_in(quantity: LogColumn, unit: &Unit, model: &Model) -> String {
 }
 
 /// "as given the model leaves 83 % of the motion unexplained, 512 mrad; so read, 4 %, 21 mrad".
-fn proof(trial: &Trial) -> String {
+fn proof(trial: &Trial, model: &Model) -> String {
+    let milli = milli(model);
     format!(
-        "as given the model leaves {} of the motion unexplained ({} mrad), with the remedy {} ({} \
-         mrad)",
+        "as given the model leaves {} of the motion unexplained ({} {milli}), with the remedy {} \
+         ({} {milli})",
         percent(trial.before),
         mrad(trial.before_rad),
         percent(trial.after),
         mrad(trial.after_rad),
     )
+}
+
+/// The unit of errors of all joints together: mm where all slide.
+fn milli(model: &Model) -> &'static str {
+    let signals: Vec<MeasuredSignal> = model.log.joints.iter().map(JointColumns::signal).collect();
+    MeasuredSignal::pooled(&signals).milli()
 }
 
 fn percent(share: f64) -> String {
@@ -224,9 +231,10 @@ pub(super) fn unusable(
             format!("{name} sits at a limit {count} times, up to {longest_s:.2} s")
         }
     };
+    let milli = milli(model);
     let proof = format!(
-        "with those rows the model leaves {} of the motion unexplained ({} mrad), without {} ({} \
-         mrad)",
+        "with those rows the model leaves {} of the motion unexplained ({} {milli}), without {} \
+         ({} {milli})",
         percent(left_out.before),
         mrad(left_out.before_rad),
         percent(left_out.after),

@@ -74,7 +74,10 @@ impl NameGuess {
 /// Takes a column's name apart.
 pub fn name_guess(name: &str) -> NameGuess {
     let (bare, bracketed) = bracketed(name);
-    let words = words(bare);
+    let (words, bracketed) = match bracketed.filter(|text| is_number_of_joint(bare, text)) {
+        Some(_) => (words(name), None),
+        None => (words(bare), bracketed),
+    };
     let (unit, unit_words) = unit(&words, bracketed);
     let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
     let role = role(&words, unit.map(|(unit, _)| unit));
@@ -96,6 +99,20 @@ pub fn name_guess(name: &str) -> NameGuess {
         joint,
         rank,
     }
+}
+
+/// Whether a number in brackets says which joint is meant: `pos (2)`, `q[1]`. A duty in `[1]` is a
+/// share.
+fn is_number_of_joint(bare: &str, text: &str) -> bool {
+    let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_duty = || words(bare).iter().any(|word| DUTY.contains(&word.as_str()));
+    is_number && !(text == "1" && is_duty())
+}
+
+/// Whether some word of a name is one for an angle.
+pub fn names_an_angle(name: &str) -> bool {
+    let words = words(bracketed(name).0);
+    words.iter().any(|word| POSITION.contains(&word.as_str()))
 }
 
 /// Whether a name says that the column holds a current.
