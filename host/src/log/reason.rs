@@ -1,5 +1,7 @@
 //! Why a log is refused: the data, its sentence, and the remedy.
 
+mod words;
+
 use super::LEAST_ROWS;
 use super::cell::decimal_comma;
 use super::lines::LONGEST_LINE;
@@ -7,6 +9,7 @@ use super::reading_limit::LARGEST_READING;
 use crate::error::Reason;
 use crate::output::shortened;
 use std::borrow::Cow;
+use words::{and_no, listed, meant, of_column, of_lines, quoted, scientific, short};
 
 /// What a field with a time stamp must be.
 pub(super) const STAMP: &str = "a time stamp such as 2026-03-01T12:00:00.5Z";
@@ -377,90 +380,5 @@ impl Reason for LogReason {
                 "ask for a range of entries without the step, such as log.json:0-99"
             }
         })
-    }
-}
-
-/// What to do about a column all of whose cells are wrong as this one is.
-fn of_column(cell: &LogReason) -> Cow<'_, str> {
-    let WrongField {
-        found, expected, ..
-    } = cell
-    else {
-        return cell.remedy();
-    };
-    if decimal_comma(found).is_some() {
-        return DecimalCommas.remedy();
-    }
-    let is_number = found.replacen(',', ".", 1).parse::<f64>().is_ok();
-    Cow::Borrowed(match *expected {
-        _ if found.is_empty() => "record this column, or name another one in the model's [log]",
-        STAMP if is_number => {
-            "write the unit of these numbers for this column in the model's [log]: \
-             unit = \"s\", \"ms\", \"us\" or \"ns\""
-        }
-        STAMP => {
-            "save the times as such stamps, or as numbers with their unit in the model's [log]"
-        }
-        FLAG => "save this column as 0 and 1, or take it out of the model's [log]",
-        _ => {
-            "name a column of numbers in the model's [log], or save this one as numbers with a \
-             decimal point"
-        }
-    })
-}
-
-/// "lines 5, 9, .."
-fn of_lines(lines: &[usize], more: usize) -> String {
-    let named: Vec<String> = lines.iter().map(usize::to_string).collect();
-    let rest = if more > lines.len() { ", .." } else { "" };
-    let word = if more == 1 { "line" } else { "lines" };
-    format!("{word} {}{rest}", named.join(", "))
-}
-
-fn meant(nearest: &Option<String>) -> String {
-    match nearest {
-        Some(nearest) => format!("; did you mean '{}'?", shortened(nearest)),
-        None => ".".to_string(),
-    }
-}
-
-fn and_no(column: &Option<String>) -> String {
-    column.as_ref().map_or(String::new(), |column| {
-        format!(", and no column '{}'", shortened(column))
-    })
-}
-
-/// Up to 40 names.
-fn listed(names: &[String]) -> String {
-    let shown: Vec<Cow<str>> = names
-        .iter()
-        .take(40)
-        .map(|name| match name.as_str() {
-            "" => "(unnamed)".into(),
-            name => shortened(name),
-        })
-        .collect();
-    let more = if names.len() > 40 { ", ..." } else { "" };
-    format!("{}{more}", shown.join(", "))
-}
-
-/// A number of any size in few characters.
-fn scientific(value: f64) -> String {
-    format!("{value:.3e}")
-}
-
-/// A time with all its digits, unless it is too large to be one.
-fn short(time_s: f64) -> String {
-    match time_s.abs() < 1e15 {
-        true => time_s.to_string(),
-        false => format!("{time_s:e}"),
-    }
-}
-
-/// What a field holds, up to 40 characters.
-fn quoted(text: &str) -> String {
-    match text {
-        "" => "nothing".to_string(),
-        text => format!("'{}'", shortened(text)),
     }
 }

@@ -3,11 +3,12 @@
 use super::Guess;
 use super::coding::{self, sign_bit};
 use super::dataset::{self, give_lerobot_roles, is_joint_state, is_lerobot};
+use super::inputs::give_inputs;
 use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
 use super::name::{NameGuess, Role, name_guess};
 use super::segment::stepping_segment;
-use super::unused::{quoted, say_file, say_unused};
-use super::values::{angle_unit, counts, duty_unit, median, range, speed_fit, time_unit};
+use super::unused::{say_file, say_unused};
+use super::values::{angle_unit, counts, duty_unit, median, range, speed_fit};
 use crate::error::{Error, Place, Result};
 use crate::log::{LogReason, RawLog};
 use crate::model::Unit;
@@ -25,7 +26,7 @@ const OF_JOINTS: [Role; 7] = [
 ];
 
 /// Inputs in the order in which they are believed, and their drives.
-const INPUTS: [(Role, &str); 5] = [
+pub(super) const INPUTS: [(Role, &str); 5] = [
     (Role::Torque, "torque"),
     (Role::GoalPosition, "position"),
     (Role::GoalVelocity, "speed"),
@@ -88,47 +89,14 @@ pub fn log_guess(
     Ok(guess)
 }
 
-/// Where the names tell of one joint's angle or speed, inputs that name no joint are that joint's;
-/// so is the only input, whatever its name says: `shoulder_deg` with `motor_torque_nm` or `m1_tau`.
-fn give_inputs(names: &mut [NameGuess]) {
-    let is_input = |name: &NameGuess| INPUTS.iter().any(|(role, _)| name.role == Some(*role));
-    let with = |role: Role| -> Vec<&String> {
-        let mut joints: Vec<&String> = Vec::new();
-        for name in names.iter().filter(|name| name.role == Some(role)) {
-            if !joints.contains(&&name.joint) {
-                joints.push(&name.joint);
-            }
-        }
-        joints
-    };
-    let measured = match with(Role::Position) {
-        angles if angles.is_empty() => with(Role::Velocity),
-        angles => angles,
-    };
-    let [joint] = measured[..] else {
-        return;
-    };
-    let joint = joint.clone();
-    let only = names.iter().filter(|name| is_input(name)).count() == 1;
-    for name in names.iter_mut().filter(|name| is_input(name)) {
-        if only || name.joint.is_empty() {
-            name.joint.clone_from(&joint);
-        }
-    }
-}
-
-fn listed(log: &RawLog) -> String {
-    quoted(log.names.iter().map(String::as_str))
-}
-
 fn is_flag(log: &RawLog, name: &str) -> bool {
     let index = log.names.iter().position(|known| known == name);
     index.is_some_and(|index| log.columns[index].iter().all(|v| *v == 0.0 || *v == 1.0))
 }
 
-struct GuessReader<'a> {
-    log: &'a RawLog,
-    names: Vec<NameGuess>,
+pub(super) struct GuessReader<'a> {
+    pub log: &'a RawLog,
+    pub names: Vec<NameGuess>,
     drive: Option<&'a str>,
     is_lerobot: bool,
 }
@@ -154,43 +122,8 @@ impl GuessReader<'_> {
         }
     }
 
-    /// Why no angle and no speed was found.
-    fn no_joint(&self, file: &str) -> Error {
-        let moving = [Role::Position, Role::Velocity].map(Some);
-        let mut named = (0..self.names.len()).filter(|i| moving.contains(&self.names[*i].role));
-        if let Some(index) = named.next() {
-            return self.no_number(file, index);
-        }
-        Error::data(
-            Place::file(file),
-            format!(
-                "no column is named as an angle or a speed: {}",
-                listed(self.log)
-            ),
-            "name the angle's column angle_rad, q1_rad or position, or write the model by hand: \
-             docs/model.md",
-        )
-    }
-
-    /// A column of the right name that holds no number.
-    fn no_number(&self, file: &str, index: usize) -> Error {
-        let name = shortened(&self.log.names[index]);
-        let words = self.log.words.get(index).and_then(Option::as_deref);
-        let holds = words.map_or(String::new(), |words| {
-            format!(", but words such as '{}'", shortened(words))
-        });
-        let remedy = match self.names[index].role {
-            Some(Role::Time) => {
-                "save times as numbers, or as stamps such as 2026-03-01T12:00:00.25Z or 12:00:00.25"
-            }
-            _ => "save it as numbers with a decimal point",
-        };
-        let what = format!("column '{name}' holds no number{holds}");
-        Error::data(Place::file(file), what, remedy)
-    }
-
     /// The column in its name's unit if that measures the right thing, else in the one guessed.
-    fn with_unit(
+    pub(super) fn with_unit(
         &self,
         index: usize,
         what: &str,
@@ -216,46 +149,6 @@ impl GuessReader<'_> {
             why,
         ));
         column
-    }
-
-    fn time(&self, file: &str, said: &mut Vec<Guess>) -> Result<ColumnGuess> {
-        let has_numbers = |index: &usize| range(&self.log.columns[*index]).is_some();
-        let named = (0..self.names.len()).filter(|i| self.names[*i].role == Some(Role::Time));
-        let named: Vec<usize> = named.collect();
-        let found = named.iter().copied().find(has_numbers);
-        let found = found.or_else(|| self.log.time().filter(has_numbers));
-        let index = match (found, named.first()) {
-            (Some(index), _) => index,
-            (None, Some(empty)) => return Err(self.no_number(file, *empty)),
-            (None, None) => {
-                return Err(Error::data(
-                    Place::file(file),
-                    format!(
-                        "no column is named time, and none only grows: {}",
-                        listed(self.log)
-                    ),
-                    "add a column time_s; rows a fixed period apart are their number times the \
-                     period",
-                ));
-            }
-        };
-        if !self.log.called_time(index) && !named.contains(&index) {
-            said.push(Guess::new(
-                "time",
-                format!("column {:?}", shortened(&self.log.names[index])),
-                "a guess: none is named time, and this is the first that only grows",
-            ));
-        }
-        let unit = match self.log.iso.get(index) {
-            Some(true) => "iso8601",
-            _ => time_unit(&self.log.columns[index]),
-        };
-        let why = "the middle step between rows";
-        let mut column = self.with_unit(index, "time", (unit, None), why, said);
-        if unit == "iso8601" {
-            column.unit = unit;
-        }
-        Ok(column)
     }
 
     /// Names of the joints, numbers in their order, others as they come.

@@ -6,11 +6,13 @@ mod coding;
 mod columns;
 mod dataset;
 mod evidence;
+mod inputs;
 mod log_guess;
 mod name;
 mod segment;
 #[cfg(test)]
 mod tests;
+mod times;
 mod unused;
 mod values;
 mod words;
