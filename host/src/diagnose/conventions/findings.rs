@@ -296,3 +296,31 @@ fn kept(left_out: &LeaveOut, motions: &[Motion], origins: &[Origin]) -> Vec<Stri
         .map(|(index, from, to)| format!("{}:{from}-{to}", origins[index].log));
     named.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_joints_that_slide_are_in_mm() {
+        let rig = |axis: &str, unit: &str| {
+            let text = format!(
+                "[rig]\nname = \"a\"\nangle_zero = \"hanging\"\n[[link]]\ncom_m = 0.1\nmass_kg = 0.2\n\
+                 inertia_kg_m2 = 1e-3\n[[joint]]\ndrive = \"torque\"\n{axis}[log]\n\
+                 time = {{ column = \"t\", unit = \"s\" }}\n[[log.joint]]\n\
+                 position = {{ column = \"x\", unit = \"{unit}\" }}\n\
+                 input = {{ column = \"u\", unit = \"{}\" }}\n",
+                if unit == "m" { "N" } else { "N m" }
+            );
+            Model::parse(&text, Path::new("a.toml")).unwrap()
+        };
+        assert_eq!(
+            milli(&rig(
+                "axis = \"slide\"\nslide_rad = 1.5707963267948966\n",
+                "m"
+            )),
+            "mm"
+        );
+        assert_eq!(milli(&rig("", "rad")), "mrad");
+    }
+}

@@ -189,9 +189,17 @@ impl<'a> FileCheck<'a> {
             self.close_motion();
         }
         let forward = self.sampling.take(row, fresh, self.findings);
-        // A sample out of order would spoil every difference after it.
+        // A sample out of order would spoil every difference after it; after a restart, that is one
+        // to the samples before.
         if !forward {
-            return;
+            if self
+                .previous
+                .as_ref()
+                .is_none_or(|previous| row.time_s >= previous.time_s)
+            {
+                return;
+            }
+            self.close_motion();
         }
         self.rows_left.take(row.line, row.time_s);
         self.empty.take(row);

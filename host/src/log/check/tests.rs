@@ -94,6 +94,22 @@ fn restarts_and_doubled_times_are_one_finding_each() {
     let (what, remedy) = refused(&text(|k| 0.01 * (k % 40) as f64));
     assert!(what.ends_with("; and 8 more like it"), "{what}");
     assert!(remedy.contains("segment column"), "{remedy}");
+    // Differences across a restart say nothing of signs.
+    let swing = |k: usize| (0.05 * k as f64).cos();
+    let row = |k: usize| {
+        format!(
+            "{},{:.5},{:.5}\n",
+            0.01 * (k % 63) as f64,
+            swing(k),
+            swing(k + 4)
+        )
+    };
+    let restarts: String = (0..630).map(row).collect();
+    let findings = found(&format!("t_s,q,u\n{restarts}"), &servo());
+    assert!(
+        !findings.iter().any(|f| f.kind == "relation"),
+        "{findings:#?}"
+    );
     // A clock coarser than the rows: each stamp stands there twice.
     let (what, remedy) = refused(&text(|k| 0.02 * (k / 2) as f64));
     assert!(what.ends_with("; and 199 more like it"), "{what}");

@@ -2,10 +2,10 @@
 
 use super::Guess;
 use super::coding::{self, sign_bit};
-use super::dataset::{self, give_lerobot_roles, is_joint_state, is_lerobot};
+use super::dataset::{self, give_lerobot_roles, is_lerobot};
 use super::inputs::give_inputs;
 use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
-use super::name::{NameGuess, Role, name_guess};
+use super::name::{NameGuess, Role, is_joint_state, name_guess};
 use super::segment::stepping_segment;
 use super::unused::{say_file, say_unused};
 use super::values::{angle_unit, counts, duty_unit, median, range, speed_fit};
@@ -135,9 +135,11 @@ impl GuessReader<'_> {
         let named = self.names[index].unit;
         let named = named.filter(|(name, _)| dimension(name) == dimension(guessed.0));
         let si = Unit::named(guessed.0, guessed.1).map(|unit| unit.dimension.si_unit());
-        let is_si = self.log.is_si || is_joint_state(&self.log.names[index]);
-        let defined = si.filter(|si| is_si && !si.is_empty() && *si != "s");
+        let defined = si.filter(|si| self.log.is_si && !si.is_empty() && *si != "s");
         let (unit, why) = match (named, defined) {
+            (Some(named), _) if is_joint_state(&self.log.names[index]) => {
+                (named, dataset::ROS_UNIT)
+            }
             (Some(named), _) => (named, "its name"),
             (None, Some(si)) => ((si, None), dataset::ROS_UNIT),
             (None, None) => (guessed, why),

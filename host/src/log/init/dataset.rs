@@ -36,11 +36,6 @@ pub fn give_lerobot_roles<'a>(names: impl Iterator<Item = &'a str>, guesses: &mu
     }
 }
 
-/// Whether a name is that of a topic of joint states, as PlotJuggler writes it.
-pub fn is_joint_state(name: &str) -> bool {
-    name.to_lowercase().contains("joint_states/")
-}
-
 /// The number behind a list's name: `action_3`.
 fn number_of(name: &str, list: &str) -> Option<String> {
     let number = name.strip_prefix(list)?.strip_prefix('_')?;

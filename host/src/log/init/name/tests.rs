@@ -44,6 +44,9 @@ fn names_of_many_benches_are_understood() {
         ("q[0]", Position, None, "0"),
         ("duty [1]", Duty, Some("1"), ""),
         ("duty (2)", Duty, None, "2"),
+        // By definition.
+        ("/joint_states/a/position", Position, Some("rad"), "a"),
+        ("/joint_states/a/velocity", Velocity, Some("rad/s"), "a"),
     ];
     for (name, role, unit, joint) in cases {
         assert_eq!(guess(name), (Some(role), unit, joint.to_string()), "{name}");
