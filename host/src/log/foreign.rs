@@ -46,7 +46,11 @@ static KINDS: &[FileKind] = &[
         "a MATLAB file",
         Read(LogFormat::Mat),
     ),
-    kind(b"PAR1", "an Apache Parquet file", Read(LogFormat::Parquet)),
+    kind(
+        b"PAR1\x15",
+        "an Apache Parquet file",
+        Read(LogFormat::Parquet),
+    ),
     kind(
         b"SQLite format 3\0",
         "a SQLite file, as a rosbag2 is",
@@ -86,11 +90,11 @@ static KINDS: &[FileKind] = &[
         "packed by gzip",
         Convert("unpack it first: gunzip -k FILE"),
     ),
-    kind(
-        b"BZh",
-        "packed by bzip2",
-        Convert("unpack it first: bunzip2 -k FILE"),
-    ),
+    FileKind {
+        mark: (4, b"1AY&SY"),
+        what: "packed by bzip2",
+        way: Convert("unpack it first: bunzip2 -k FILE"),
+    },
     kind(
         b"\xfd7zXZ\0",
         "packed by xz",
@@ -122,7 +126,7 @@ static KINDS: &[FileKind] = &[
         Convert("save its sheet from Excel or LibreOffice as CSV UTF-8"),
     ),
     kind(
-        b"ARROW1",
+        b"ARROW1\0\0",
         "an Arrow file (Feather)",
         Convert(
             "convert it, in Python: pandas.read_feather(\"FILE\").to_parquet(\"STEM.parquet\")",
@@ -264,7 +268,7 @@ fn zipped(head: &[u8], file: &str) -> (&'static str, &'static str) {
     let holds = |part: &[u8]| head.windows(part.len()).any(|bytes| bytes == part);
     if member.ends_with(b".npy") {
         return (
-            "arrays of NumPy (.npz)",
+            "an archive of NumPy arrays (.npz)",
             "save its columns as CSV, in Python: pandas.DataFrame(dict(numpy.load(\"FILE\")))\
              .to_csv(\"STEM.csv\", index=False)",
         );

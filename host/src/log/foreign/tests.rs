@@ -39,7 +39,12 @@ fn a_foreign_file_is_named_with_its_way_by_every_reader() {
             "an array of NumPy",
             "numpy.load(\"a.npy\")",
         ),
-        ("a.npz", &npz, "arrays of NumPy", "numpy.load(\"a.npz\")"),
+        (
+            "a.npz",
+            &npz,
+            "an archive of NumPy arrays",
+            "numpy.load(\"a.npz\")",
+        ),
         (
             "a.xlsx",
             b"PK\x03\x04....",
@@ -57,7 +62,7 @@ fn a_foreign_file_is_named_with_its_way_by_every_reader() {
         // Under the ending of another format.
         (
             "a.json",
-            b"PAR1....",
+            b"PAR1\x15...",
             "an Apache Parquet file",
             "name it a.parquet",
         ),
@@ -85,5 +90,15 @@ fn a_foreign_file_is_named_with_its_way_by_every_reader() {
         for said in said(name, bytes) {
             assert!(said.contains(what) && said.contains(way), "{name}: {said}");
         }
+    }
+}
+
+#[test]
+fn names_of_columns_are_no_marks() {
+    for name in ["PAR1", "BZh", "MDF", "ARROW1", "TDS", "Rar"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, format!("{name},q\n1,2\n")).unwrap();
+        assert_eq!(RawLog::read(&path).unwrap().names, [name, "q"]);
     }
 }

@@ -1,6 +1,6 @@
 //! Registers of servos whose numbers are no plain ones: sign and magnitude.
 
-use super::values::is_slope;
+use super::values::slope_correlation;
 
 /// Bits that hold a sign: Feetech's speed and current, Dynamixel 1.0's speed and load.
 const SIGN_BITS: [u32; 2] = [15, 10];
@@ -20,8 +20,14 @@ pub fn sign_bit(values: &[f64], time_s: &[f64], angle_rad: Option<&[f64]>) -> Op
             return false;
         };
         let apart = below.max(above - sign) < 0.5 * sign;
-        let slope = |values: &[f64]| angle_rad.is_some_and(|angle| is_slope(time_s, angle, values));
-        above < 2.0 * sign && (apart || (slope(&decoded(values, *bit)) && !slope(values)))
+        let likeness = |values: &[f64]| {
+            angle_rad.map_or(0.0, |angle| slope_correlation(time_s, angle, values).abs())
+        };
+        let is_speed_decoded = || {
+            let decoded = likeness(&decoded(values, *bit));
+            decoded > 0.7 && decoded > likeness(values) + 0.1
+        };
+        above < 2.0 * sign && (apart || is_speed_decoded())
     })
 }
 

@@ -141,7 +141,7 @@ impl GuessReader<'_> {
                 (named, dataset::ROS_UNIT)
             }
             (Some(named), _) => (named, "its name"),
-            (None, Some(si)) => ((si, None), dataset::ROS_UNIT),
+            (None, Some(si)) => ((si, None), dataset::FORMAT_UNIT),
             (None, None) => (guessed, why),
         };
         let column = self.column(index, unit);
@@ -197,6 +197,8 @@ impl GuessReader<'_> {
             name => format!("{what} of joint {name}"),
         };
         let why = match self.is_lerobot {
+            // Said once.
+            true if said.iter().any(|guess| guess.why == dataset::LEROBOT_UNIT) => "likewise",
             true => dataset::LEROBOT_UNIT,
             false => "the range of its values",
         };

@@ -11,6 +11,8 @@ const EPISODE: &str = "episode_index";
 pub const LEROBOT_UNIT: &str = "a guess from its range: LeRobot writes deg, rad or per cent of each \
                                 joint's calibrated range; of per cent from -100 to 100 over R rad: \
                                 unit = \"ticks\", ticks_per_turn = 200 * 2 pi / R";
+/// Why a value of a format that defines its units has them.
+pub const FORMAT_UNIT: &str = "the format defines it";
 /// Why a joint state is in SI.
 pub const ROS_UNIT: &str = "joint states are in rad, rad/s and N m by definition";
 

@@ -3,7 +3,7 @@
 use super::Guess;
 use super::columns::GuessReader;
 use super::log_guess::ColumnGuess;
-use super::name::Role;
+use super::name::{Role, name_guess};
 use super::unused::quoted;
 use super::values::{range, time_unit};
 use crate::error::{Error, Place, Result};
@@ -47,7 +47,10 @@ impl GuessReader<'_> {
             Some(true) => "iso8601",
             _ => time_unit(&self.log.columns[index]),
         };
-        let why = "the middle step between rows";
+        let why = match unit {
+            "iso8601" => "its values are time stamps",
+            _ => "the middle step between rows",
+        };
         let mut column = self.with_unit(index, "time", (unit, None), why, said);
         if unit == "iso8601" {
             column.unit = unit;
@@ -61,6 +64,14 @@ impl GuessReader<'_> {
         let mut named = (0..self.names.len()).filter(|i| moving.contains(&self.names[*i].role));
         if let Some(index) = named.next() {
             return self.no_number(file, index);
+        }
+        let is_moving = |(name, _): &&(String, String)| moving.contains(&name_guess(name).role);
+        if let Some((name, holds)) = self.log.left_out.iter().find(is_moving) {
+            return Error::data(
+                Place::file(file),
+                format!("column '{}' holds {holds}", shortened(name)),
+                "save it as numbers, one a row",
+            );
         }
         Error::data(
             Place::file(file),

@@ -48,8 +48,14 @@ pub fn say_file(log: &RawLog, guess: &LogGuess, said: &mut Vec<Guess>) {
 /// Says which columns are not used.
 pub fn say_unused(log: &RawLog, names: &[NameGuess], guess: &LogGuess, said: &mut Vec<Guess>) {
     let used = guess.names();
+    // Of a column that is not taken for its coding that was said.
+    let is_said = |name: &str| {
+        let coded = format!("column {:?} not taken", shortened(name));
+        said.iter().any(|guess| guess.guess.starts_with(&coded))
+    };
     let unused: Vec<usize> = (0..log.names.len())
         .filter(|index| !used.contains(&log.names[*index].as_str()))
+        .filter(|index| !is_said(&log.names[*index]))
         .collect();
     let is_angle = |index: &&usize| {
         let name = &log.names[**index];

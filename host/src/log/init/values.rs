@@ -110,9 +110,28 @@ pub fn speed_fit(time_s: &[f64], angle_rad: &[f64], speed: &[f64]) -> Option<Spe
     })
 }
 
-/// Whether values are the slope of the angles, but for their scale.
-pub fn is_slope(time_s: &[f64], angle_rad: &[f64], values: &[f64]) -> bool {
-    Slopes::of(time_s, angle_rad, values).alike().is_some()
+/// Correlation of values with the slope of the angles, -1 to 1; 0 where either does not change.
+pub fn slope_correlation(time_s: &[f64], angle_rad: &[f64], values: &[f64]) -> f64 {
+    let slope = |k: usize| (angle_rad[k + 1] - angle_rad[k - 1]) / (time_s[k + 1] - time_s[k - 1]);
+    let pairs = (1..time_s.len().saturating_sub(1)).map(|k| (slope(k), values[k]));
+    let pairs: Vec<(f64, f64)> = pairs
+        .filter(|(slope, value)| slope.is_finite() && value.is_finite())
+        .collect();
+    let count = pairs.len().max(1) as f64;
+    let means = pairs
+        .iter()
+        .fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
+    let (mut cross, mut square, mut own) = (0.0, 0.0, 0.0);
+    for (slope, value) in pairs {
+        let (slope, value) = (slope - means.0 / count, value - means.1 / count);
+        cross += slope * value;
+        square += slope * slope;
+        own += value * value;
+    }
+    match square * own > 0.0 {
+        true => cross / (square * own).sqrt(),
+        false => 0.0,
+    }
 }
 
 /// Sums of products of the slopes of angles and of speeds.

@@ -27,7 +27,7 @@ fn a_free_joint_hangs_where_it_rests() {
         ((|t| 100.0 + 3.0 * t) as TestCurve, None),
         (|t| 0.88 + swing(t), Some(("goal", swing as TestCurve))),
     ] {
-        let mut columns: Vec<(&str, TestCurve)> = vec![("t", |t| t), ("q", q)];
+        let mut columns: Vec<(&str, TestCurve)> = vec![("t", |t| t), ("q_rad", q)];
         columns.extend(input);
         let draft = Draft::of(&log(&columns), "a.csv", None).unwrap();
         let position = draft.columns.joints[0].position.as_ref().unwrap();
@@ -168,6 +168,10 @@ fn what_is_a_guess_about_the_header_is_said() {
         error.contains("'q_rad' holds no number, but words such as '0.5 rad'"),
         "{error}"
     );
+    let mut decimals = log(&[("t", |t| t)]);
+    decimals.left_out.push(("q_rad".into(), "decimals".into()));
+    let error = Draft::of(&decimals, "a.csv", None).unwrap_err().to_string();
+    assert!(error.contains("'q_rad' holds decimals"), "{error}");
     let mut clock = log(&[("Time", |_| f64::NAN), ("q", swing)]);
     clock.words[0] = Some("noon".into());
     let error = Draft::of(&clock, "a.csv", None).unwrap_err().to_string();
