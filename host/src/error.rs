@@ -1,5 +1,6 @@
 //! Errors of the whole crate: place, what was found there, exit code and remedy.
 
+use crate::output::readable;
 use std::any::Any;
 use std::borrow::Cow;
 use std::fmt;
@@ -92,10 +93,10 @@ pub(crate) fn words(what: impl Into<String>, remedy: impl Into<String>) -> impl 
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The command line asks for something that makes no sense.
-    #[error("{0}")]
+    #[error("{}", readable(.0))]
     Usage(Box<dyn Reason>),
     /// A file's content is refused.
-    #[error("{place}: {reason}")]
+    #[error("{place}: {}", readable(reason))]
     Data {
         /// File, line and column.
         place: Place,
@@ -114,10 +115,10 @@ pub enum Error {
         refusal: std::io::Error,
     },
     /// Model, weights and timing are well formed, but no design follows from them.
-    #[error("{0}")]
+    #[error("{}", readable(.0))]
     Design(Box<dyn Reason>),
     /// A device (serial port, servo) failed or fell silent.
-    #[error("{0}")]
+    #[error("{}", readable(.0))]
     Device(Box<dyn Reason>),
 }
 
@@ -195,7 +196,9 @@ impl Error {
                 action,
                 refusal,
             } => of_system(path, action, refusal.kind()),
-            _ => self.any_reason().map(Reason::remedy),
+            _ => self
+                .any_reason()
+                .map(|reason| readable(reason.remedy()).into()),
         }
     }
 }

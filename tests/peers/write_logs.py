@@ -200,6 +200,26 @@ def write_mat73_h5py(file, libver):
     write_userblock(file)
 
 
+def write_structures(folder):
+    """Two recordings as an array of structures, in either version: neither is the log."""
+    runs = [(np.arange(ROWS) / 50, np.full(ROWS, 0.5 + run)) for run in range(2)]
+    array = np.array(runs, dtype=[("time", "O"), ("angle", "O")])
+    savemat(folder / "structures.mat", {"test": array}, do_compression=True)
+    file = folder / "structures73.mat"
+    with h5py.File(file, "w", userblock_size=512) as stream:
+        test = stream.create_group("test")
+        test.attrs["MATLAB_class"] = np.bytes_("struct")
+        held = stream.create_group("#refs#")
+        for at, key in enumerate(["time", "angle"]):
+            fields = [held.create_dataset(f"{key}{run}", data=np.atleast_2d(values[at]))
+                      for run, values in enumerate(runs)]
+            for field in fields:
+                field.attrs["MATLAB_class"] = np.bytes_("double")
+            refer = test.create_dataset(key, (2, 1), dtype=h5py.ref_dtype)
+            refer[:, 0] = [field.ref for field in fields]
+    write_userblock(file)
+
+
 def write_userblock(file):
     words = b"MATLAB 7.3 MAT-file, HDF5 schema 1.00 .".ljust(116) + bytes(8)
     with open(file, "r+b") as stream:
@@ -333,6 +353,7 @@ def main():
     write_mat73(folder / "v73.mat")
     write_mat73_h5py(folder / "v73_packed.mat", "earliest")
     write_mat73_h5py(folder / "v73_latest.mat", "latest")
+    write_structures(folder)
     write_parquet(folder)
     with open(folder / "expected.json", "w", encoding="utf-8") as file:
         json.dump(expected(), file)

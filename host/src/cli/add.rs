@@ -42,7 +42,7 @@ pub struct AddArgs {
 
 /// Fits, writes, prints.
 pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
-    let text = input::text(&args.model)?;
+    let text = input::model_text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let candidates = candidates_named(&args.effects, &model)?;
     let split = args.fit.motions(&model, &args.logs, talk)?;

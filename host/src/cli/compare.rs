@@ -25,7 +25,7 @@ use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
 use handstand::log::{LogFinding, LogRequest, Split, read_with_findings};
 use handstand::report::{Report, file_names, html, json};
-use handstand::{Model, Result, compare};
+use handstand::{Result, compare};
 use std::path::PathBuf;
 
 /// Compare a model's simulation with measured logs.
@@ -55,7 +55,7 @@ pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut closed_loops = Vec::new();
     let mut findings = Vec::new();
     for (file, name) in files.iter().zip(file_names(&files)) {
-        let model = Model::load(file)?;
+        let model = input::model(file)?;
         // Each model names columns and zeros its own way.
         let (motions, found) = read_with_findings(&args.logs, &model.log)?;
         let new = |finding: &LogFinding| !findings.contains(finding);

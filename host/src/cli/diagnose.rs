@@ -98,7 +98,7 @@ pub fn run(args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
 /// The diagnosis itself, printed and written as by [`run`].
 pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
     args.page.vacant()?;
-    let model = Model::load(&args.model)?;
+    let model = input::model(&args.model)?;
     let plan = args.plan.load(&model)?;
     let LogDiagnosis { diagnosis, split } = try_all(&model, args, talk)?;
     if diagnosis.verdict == Verdict::Unfit {

@@ -15,11 +15,11 @@
 //! `on_bound`, `stands_out`; `mean`, `probability`, `differ`) and `refused` (name and reason).
 
 use super::{ExitStatus, Talk, input, show};
+use handstand::Result;
 use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free_parameters};
 use handstand::log::{LogRequest, expanded};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
-use handstand::{Model, Result};
 use std::path::PathBuf;
 
 /// Test whether a model's values differ between sessions or servos.
@@ -39,7 +39,7 @@ pub struct DriftArgs {
 
 /// Fits each log, compares, prints.
 pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
-    let model = Model::load(&args.model)?;
+    let model = input::model(&args.model)?;
     let free = free_parameters(&model, &args.free)?;
     // A session is read by itself; that none shares rows with another, or is a copy, shows in all.
     expanded(&args.logs)?;

@@ -37,7 +37,7 @@ pub struct FitArgs {
 
 /// Fits, writes, prints.
 pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
-    let text = input::text(&args.model)?;
+    let text = input::model_text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
     let free = free_parameters(&model, &args.free)?;
     let split = args.fit.motions(&model, &args.logs, talk)?;

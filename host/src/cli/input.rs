@@ -2,8 +2,11 @@
 
 use super::Talk;
 use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
+use handstand::error::Place;
 use handstand::fitting::{Horizon, free_parameters};
-use handstand::log::{LogFinding, LogRequest, LogSet, Motion, Split, read_with_findings};
+use handstand::log::{
+    LogFinding, LogFormat, LogRequest, LogSet, Motion, Split, read_with_findings,
+};
 use handstand::model::{LogColumns, ParameterPath};
 use handstand::output::vacant;
 use handstand::synth::StateFeedbackPlan;
@@ -129,7 +132,45 @@ pub fn warn(findings: &[LogFinding], talk: &Talk) {
 
 /// A log argument, its error with the remedy: `drop.csv`, `drop.csv:26-139`.
 pub fn log(text: &str) -> Result<LogRequest, String> {
-    text.parse().map_err(said)
+    let request: LogRequest = text.parse().map_err(said)?;
+    let ending = request.path.extension();
+    match ending.is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        true => Err(format!(
+            "this is a model file, not a log; are the two swapped? {MODEL_FIRST}"
+        )),
+        false => Ok(request),
+    }
+}
+
+const MODEL_FIRST: &str = "The model comes first, then the logs: MODEL.toml LOG.csv";
+
+/// The model in a file.
+///
+/// # Errors
+/// As [`Model::load`]; a log.
+pub fn model(path: &Path) -> Result<Model> {
+    no_log(path)?;
+    Model::load(path)
+}
+
+/// The text of a model's file.
+///
+/// # Errors
+/// As [`text`]; a log.
+pub fn model_text(path: &Path) -> Result<String> {
+    no_log(path)?;
+    text(path)
+}
+
+fn no_log(path: &Path) -> Result<()> {
+    match LogFormat::is_log(path) && path.is_file() {
+        true => Err(Error::data(
+            Place::file(path),
+            "this is a log, not a model file",
+            format!("are the two swapped? {MODEL_FIRST}"),
+        )),
+        false => Ok(()),
+    }
 }
 
 /// A horizon argument: seconds, or `whole`.

@@ -21,10 +21,10 @@ mod plot;
 use super::ExitStatus;
 use super::Talk;
 use super::input;
+use handstand::Result;
 use handstand::diagnose::conventions::{self, ModelFile};
 use handstand::log::{LogFinding, LogRequest, Severity};
 use handstand::report::{log_check_json, log_check_text};
-use handstand::{Model, Result};
 use std::path::{Path, PathBuf};
 
 /// What can be done with logs.
@@ -70,7 +70,7 @@ fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
 /// # Errors
 /// A model file that is refused, and what the system refuses.
 pub fn findings(logs: &[LogRequest], file: &Path) -> Result<Vec<LogFinding>> {
-    let model = Model::load(file)?;
+    let model = input::model(file)?;
     let text = input::text(file)?;
     let file = ModelFile {
         path: file,

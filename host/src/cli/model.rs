@@ -10,10 +10,10 @@
 //! Without `-o` the file's text goes to stdout. `--json` prints `format`, `file` (or null), `text`
 //! (null where a file was written) and `not_carried` (`part`, `joint`, `why`).
 
-use super::{ExitStatus, Talk};
+use super::{ExitStatus, Talk, input};
+use handstand::Result;
 use handstand::model::export::{Exported, mjcf, urdf};
 use handstand::output::vacant;
-use handstand::{Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -54,7 +54,7 @@ pub fn export(args: &ModelExportArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
         vacant(file, args.force)?;
     }
-    let model = Model::load(&args.model)?;
+    let model = input::model(&args.model)?;
     let (format, exported) = match args.to {
         ExportFormat::Mjcf => ("mjcf", mjcf(&model)),
         ExportFormat::Urdf => ("urdf", urdf(&model)),

@@ -102,7 +102,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
         output::vacant(file, args.force)?;
     }
     effect_ids(&args.without)?;
-    let mut model = Model::load(&args.model)?;
+    let mut model = input::model(&args.model)?;
     model.hinges_only("proposed motions are for servos that turn")?;
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));

@@ -17,7 +17,7 @@ use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
 use handstand::report::file_names;
 use handstand::report::playback::{Scene, html};
-use handstand::{Error, Model, Result, output};
+use handstand::{Error, Result, output};
 use std::path::PathBuf;
 
 /// Animate a motion on an HTML page.
@@ -47,7 +47,7 @@ pub struct ViewArgs {
 /// Reads, runs the models, writes the page.
 pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
     output::vacant(&args.output, args.force)?;
-    let model = Model::load(&args.model)?;
+    let model = input::model(&args.model)?;
     model.hinges_only("a page draws links that turn")?;
     if let Some(sentence) = model.log.unobserved().into_iter().next() {
         return Err(Error::usage(
@@ -58,7 +58,7 @@ pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
     let motions = input::motions(&args.logs, &model.log, talk)?;
     let mut scene = Scene::measured(&model, &motions);
     for (file, name) in args.others.iter().zip(file_names(&args.others)) {
-        let other = Model::load(file)?;
+        let other = input::model(file)?;
         if other.link_count() != model.link_count() {
             return Err(Error::usage(
                 format!(

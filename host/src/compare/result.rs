@@ -44,7 +44,8 @@ pub struct SignalError {
     pub rms: f64,
     /// Largest error.
     pub largest: f64,
-    /// 100 (1 - |y - yhat| / |y - mean y|), as MATLAB's `compare` defines it; 100 is perfect.
+    /// 100 (1 - |y - yhat| / |y - mean y|), as MATLAB's `compare` defines it; 100 is perfect, not a
+    /// number where nothing moves.
     pub fit_percent: f64,
     /// What resolution and noise alone leave.
     pub floor: f64,

@@ -158,8 +158,8 @@ fn share_above(rms: f64, floor: f64) -> f64 {
     }
 }
 
-/// 100 (1 - |y - yhat| / |y - mean y|) over all motions together; 0 where nothing moves and the
-/// model is wrong.
+/// 100 (1 - |y - yhat| / |y - mean y|) over all motions together; not a number where nothing moves:
+/// there a model that predicts nothing is as good as any.
 pub(crate) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
     let values = || measured.iter().copied().flatten().filter(|y| y.is_finite());
     let mean = values().sum::<f64>() / values().count().max(1) as f64;
@@ -170,10 +170,9 @@ pub(crate) fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
         .filter(|e| e.is_finite())
         .map(|e| e * e)
         .sum();
-    match (error > 0.0, spread > 0.0) {
-        (false, _) => 100.0,
-        (true, false) => 0.0,
-        (true, true) => 100.0 * (1.0 - (error / spread).sqrt()),
+    match spread > 0.0 {
+        true => 100.0 * (1.0 - (error / spread).sqrt()),
+        false => f64::NAN,
     }
 }
 

@@ -4,7 +4,7 @@ use super::closed_loop::closed_loop_text;
 use super::result::{Comparison, SignalError};
 use crate::fitting::in_windows;
 use crate::model::MeasuredSignal;
-use crate::output::number::mrad_in_column;
+use crate::output::number::{NONE, mrad_in_column};
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
 
@@ -187,7 +187,10 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], wanted: (usize, bo
     let lines: [(&str, Cell); 6] = [
         ("rms, mrad", |s| mrad_in_column(s.rms)),
         ("largest, mrad", |s| mrad_in_column(s.largest)),
-        ("fit, %", |s| format!("{:.1}", s.fit_percent)),
+        ("fit, %", |s| match s.fit_percent.is_nan() {
+            true => NONE.to_string(),
+            false => format!("{:.1}", s.fit_percent),
+        }),
         ("floor, mrad", |s| mrad_in_column(s.floor)),
         ("squared error above floor, %", |s| {
             format!("{:.0}", 100.0 * s.share_above_floor)

@@ -4,20 +4,23 @@
 //! `entries`, each with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`,
 //! `input_volts`, `torque_enable`.
 
+use super::foreign::{HEAD, foreign};
+use super::format::LogFormat;
 use super::read::LEAST_ROWS;
 use super::reading_limit::LARGEST_READING;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::{Motion, MotionSource};
 use crate::error::{Error, Place, Result};
-use crate::model::ArmFigures;
+use crate::model::LogColumns;
 use crate::output::number::hex;
+use crate::output::shortened;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
-/// How far a bench's mass and moment may lie off the model's, as a share: a model's link counts the
-/// arm and what was fitted, the bench its weight.
+/// How far a bench's mass, moment and length may lie off the model's, as a share: a model's link
+/// counts the arm and what was fitted, the bench its weight.
 const TOLERANCE: f64 = 0.25;
 
 /// What the logs of one rig have in common.
@@ -27,30 +30,75 @@ pub(super) struct BamBench {
     kp: Option<(String, f64)>,
 }
 
+/// What a bench's log says of its arm: an even rod with a weight at its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BenchFigures {
+    /// The weight, kg.
+    pub mass_kg: f64,
+    /// The rod, kg; 0 where the log says nothing of it.
+    pub arm_mass_kg: f64,
+    /// From the joint to the weight, m.
+    pub length_m: f64,
+}
+
+impl BenchFigures {
+    fn of(log: &Value) -> Option<BenchFigures> {
+        let number = |key: &str| log.get(key).and_then(Value::as_f64);
+        Some(BenchFigures {
+            mass_kg: number("mass")?,
+            arm_mass_kg: number("arm_mass").unwrap_or(0.0),
+            length_m: number("length")?,
+        })
+    }
+}
+
 /// Reads the log, or the entries asked for, as one motion.
 ///
-/// The mass in the file belongs to the model, so the motion carries no payload; with `length`, it
-/// must be that of the model's one link, and `kp` that of the logs before. Speed, supply and
-/// `torque_enable` are taken where every entry has them. `source.lines` holds entries, counted from
-/// 1.
+/// Where `columns` name a payload, each log's own weight is it, and the model's one link is the rod;
+/// else the link is both. `kp` must be that of the logs before. Speed, supply and `torque_enable`
+/// are taken where every entry has them. `source.lines` holds entries, counted from 1.
 ///
 /// # Errors
 /// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that
 /// does not increase; fewer than [`LEAST_ROWS`] entries; mass, length or gain of another rig.
 pub(super) fn read(
     request: &LogRequest,
-    arm: Option<ArmFigures>,
+    columns: &LogColumns,
     bench: &mut BamBench,
 ) -> Result<Motion> {
+    Ok(read_of(request, Some(columns), bench)?.0)
+}
+
+/// Reads a log without a model, and what it says of its bench.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn read_alone(request: &LogRequest) -> Result<(Motion, Option<BenchFigures>)> {
+    read_of(request, None, &mut BamBench::default())
+}
+
+fn read_of(
+    request: &LogRequest,
+    columns: Option<&LogColumns>,
+    bench: &mut BamBench,
+) -> Result<(Motion, Option<BenchFigures>)> {
     let path = &request.path;
     let bytes = std::fs::read(path).map_err(|source| Error::file(path, "read", source))?;
+    if let Some(error) = foreign(path, &bytes[..bytes.len().min(HEAD)], LogFormat::Bam) {
+        return Err(error);
+    }
     let log: Value = serde_json::from_slice(&bytes).map_err(|error| {
         let place = Place::at(path, error.line().max(1), error.column().max(1));
         let message = error.to_string();
         Error::refused(place, LogReason::NotJson { message })
     })?;
     let refuse = |reason| Error::refused(Place::file(path), reason);
-    bench.check(&log, arm, &request.name()).map_err(refuse)?;
+    let figures = BenchFigures::of(&log);
+    let payload_kg = match columns {
+        Some(columns) => payload_kg(&log, figures, columns).map_err(refuse)?,
+        None => 0.0,
+    };
+    bench.check(&log, &request.name()).map_err(refuse)?;
     let all = log.get("entries").and_then(Value::as_array);
     let all = all.ok_or_else(|| refuse(LogReason::NoEntries))?;
     let entries = all.len();
@@ -75,7 +123,7 @@ pub(super) fn read(
             previous_s: time_s[late],
         }));
     }
-    Ok(Motion {
+    let motion = Motion {
         name: request.name(),
         source: MotionSource {
             path: path.clone(),
@@ -89,39 +137,71 @@ pub(super) fn read(
         supply_v: entries.optional("input_volts")?,
         torque_on: entries.flags("torque_enable")?,
         time_s,
-        payload_kg: 0.0,
+        payload_kg,
         turned: false,
-    })
+    };
+    Ok((motion, figures))
+}
+
+/// The payload of a log, kg, once its figures agree with the model's.
+fn payload_kg(
+    log: &Value,
+    figures: Option<BenchFigures>,
+    columns: &LogColumns,
+) -> Result<f64, LogReason> {
+    let payload_kg = columns.payload.as_ref().map(|payload| {
+        let value = log.get(&payload.name).and_then(Value::as_f64);
+        let value = value.filter(|value| value.is_finite() && *value >= 0.0);
+        value
+            .map(|value| payload.to_si(value))
+            .ok_or(LogReason::NoFact {
+                key: payload.name.clone(),
+            })
+    });
+    let payload_kg = payload_kg.transpose()?;
+    let (Some(arm), Some(bench)) = (columns.arm, figures) else {
+        return Ok(payload_kg.unwrap_or(0.0));
+    };
+    let BenchFigures {
+        mass_kg,
+        arm_mass_kg: rod_kg,
+        length_m,
+    } = bench;
+    let moment_kg_m = arm.mass_kg * arm.com_m.abs();
+    let compared = match payload_kg {
+        None => vec![
+            ("mass", mass_kg + rod_kg, arm.mass_kg, "kg"),
+            (
+                "mass times length",
+                (mass_kg + rod_kg / 2.0) * length_m,
+                moment_kg_m,
+                "kg m",
+            ),
+        ],
+        Some(_) => vec![
+            ("length", length_m, columns.payload_at_m.abs(), "m"),
+            ("arm_mass", rod_kg, arm.mass_kg, "kg"),
+        ],
+    };
+    // Of a rod whose mass the log does not say, nothing can be held against the model.
+    let said = compared.into_iter().filter(|(_, found, ..)| *found > 0.0);
+    for (quantity, found, expected, unit) in said {
+        if (found - expected).abs() > TOLERANCE * expected {
+            return Err(LogReason::OtherRig {
+                quantity,
+                found,
+                expected,
+                unit,
+            });
+        }
+    }
+    Ok(payload_kg.unwrap_or(0.0))
 }
 
 impl BamBench {
-    /// Holds a log's figures against the model's, and its gain against the logs before.
-    fn check(&mut self, log: &Value, arm: Option<ArmFigures>, name: &str) -> Result<(), LogReason> {
+    /// Holds a log's gain against those of the logs before.
+    fn check(&mut self, log: &Value, name: &str) -> Result<(), LogReason> {
         let number = |key: &str| log.get(key).and_then(Value::as_f64);
-        if let (Some(arm), Some(mass_kg), Some(length_m)) = (arm, number("mass"), number("length"))
-        {
-            let rod_kg = number("arm_mass").unwrap_or(0.0);
-            let (found_kg, found_kg_m) = (mass_kg + rod_kg, (mass_kg + rod_kg / 2.0) * length_m);
-            let compared = [
-                ("mass", found_kg, arm.mass_kg, "kg"),
-                (
-                    "mass times length",
-                    found_kg_m,
-                    arm.mass_kg * arm.com_m.abs(),
-                    "kg m",
-                ),
-            ];
-            for (quantity, found, expected, unit) in compared {
-                if (found - expected).abs() > TOLERANCE * expected {
-                    return Err(LogReason::OtherRig {
-                        quantity,
-                        found,
-                        expected,
-                        unit,
-                    });
-                }
-            }
-        }
         match (number("kp"), &self.kp) {
             (Some(found), Some((first, expected))) if found != *expected => {
                 let (expected, first) = (*expected, first.clone());
@@ -217,7 +297,7 @@ impl Entries<'_> {
         expected: &'static str,
     ) -> Error {
         let found = value.map_or("nothing".to_string(), |value| {
-            value.to_string().chars().take(40).collect()
+            shortened(&value.to_string()).into_owned()
         });
         let reason = LogReason::WrongEntry {
             entry: self.first + index,

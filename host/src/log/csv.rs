@@ -1,6 +1,6 @@
 //! Streams a CSV log row by row, in memory that does not grow with it.
 
-use super::header::LogHeader;
+use super::header::{LogHeader, comment};
 use super::lines::Lines;
 use super::row::LogRow;
 use super::row_reader::RowReader;
@@ -12,8 +12,8 @@ use std::path::Path;
 /// Hands every data row of a CSV log to `visitor`, with its number counted from 0.
 ///
 /// A row that cannot be read arrives as an error with file, line and column; the visitor decides
-/// whether that ends the reading. The separator (`,`, `;`, tab) comes from the header line;
-/// byte-order mark, CR LF, quotes, blank lines and `#` comments are taken as they come.
+/// whether that ends the reading. The separator (`,`, `;`, tab, blanks) comes from the header
+/// line; byte-order mark, CR LF, quotes, blank lines, `#` and `%` comments are taken as they come.
 ///
 /// # Errors
 /// What the visitor returns; a file that cannot be opened, is empty, or lacks a column.
@@ -23,7 +23,7 @@ pub(super) fn visit(
     visitor: &mut dyn FnMut(usize, Result<&LogRow>) -> Result<()>,
 ) -> Result<FileFacts> {
     let mut lines = Lines::open(path)?;
-    let (header, first) = LogHeader::read(path, &mut lines, &columns.time.name)?;
+    let (header, first) = LogHeader::read(path, &mut lines, Some(&columns.time.name))?;
     let reader = RowReader::new(path, columns, &header)?;
     let mut row = LogRow {
         path: path.to_path_buf(),
@@ -45,12 +45,13 @@ pub(super) fn visit(
         let at = lines.number + 1;
         match lines.next()? {
             None => break,
-            Some(text) if text.trim().is_empty() || text.trim_start().starts_with('#') => {}
+            Some(text) if text.trim().is_empty() || comment(text).is_some() => {}
             Some(text) => give(text, at)?,
         }
     }
     Ok(FileFacts {
         sha256: lines.sha256(),
         rows,
+        warning: None,
     })
 }

@@ -1,5 +1,6 @@
 //! A folder of logs stands for the logs in it.
 
+use super::foreign::foreign_file;
 use super::format::LogFormat;
 use super::request::LogRequest;
 use super::same_rows::{SameBy, SizedRequest};
@@ -59,20 +60,38 @@ fn told_apart(requests: &[LogRequest]) -> Result<()> {
 fn of_folder(request: &LogRequest) -> Result<Vec<LogRequest>> {
     let folder = &request.path;
     let refused = |error| Error::file(folder, "read", error);
-    let mut logs: Vec<PathBuf> = Vec::new();
+    let (mut logs, mut others): (Vec<PathBuf>, Vec<PathBuf>) = Default::default();
     for entry in std::fs::read_dir(folder).map_err(refused)? {
         let path = entry.map_err(refused)?.path();
-        if path.is_file() && LogFormat::is_log(&path) {
-            logs.push(path);
+        match (path.is_file(), LogFormat::is_log(&path)) {
+            (false, _) => {}
+            (true, true) => logs.push(path),
+            (true, false) => others.push(path),
         }
     }
     logs.sort();
+    others.sort();
+    if request.rows.is_none() && logs.is_empty() {
+        let mut known = others.iter();
+        if let Some((other, (what, remedy))) =
+            known.find_map(|path| Some((path, foreign_file(path)?)))
+        {
+            let name = other.file_name().unwrap_or_default().to_string_lossy();
+            let folder = folder.display();
+            let message = format!("{folder}: no log lies in it; of {name}: {what}");
+            return Err(Error::usage(message, remedy));
+        }
+    }
     let message = match (request.rows, logs.is_empty()) {
         (Some(_), _) => format!("{request}: rows of a folder"),
         (None, true) => format!("{}: no log lies in it", folder.display()),
         (None, false) => return Ok(logs.into_iter().map(LogRequest::whole).collect()),
     };
-    let remedy = "name a folder with csv, tsv, txt, json, mcap, mat or db3 files, or one file";
+    let endings: Vec<&str> = LogFormat::endings().collect();
+    let remedy = format!(
+        "name a folder with {} files, or one file",
+        endings.join(", ")
+    );
     Err(Error::usage(message, remedy))
 }
 
@@ -96,7 +115,20 @@ mod tests {
             rows: Some((0, 5)),
         };
         assert_eq!(expanded(&[rows]).unwrap_err().exit_code(), 2);
-        let empty = LogRequest::whole(folder.path().join("inner.csv"));
-        assert_eq!(expanded(&[empty]).unwrap_err().exit_code(), 2);
+        let inner = folder.path().join("inner.csv");
+        let refused = || expanded(&[LogRequest::whole(&inner)]).unwrap_err();
+        assert_eq!(refused().exit_code(), 2);
+        // What lies there under another ending is named.
+        std::fs::write(inner.join("bag_0.db3.zstd"), b"\x28\xb5\x2f\xfd....").unwrap();
+        let error = refused();
+        assert!(
+            error
+                .to_string()
+                .contains("bag_0.db3.zstd: this is a rosbag2 packed by zstd")
+        );
+        assert_eq!(
+            error.remedy().unwrap(),
+            "unpack it first: zstd -d bag_0.db3.zstd"
+        );
     }
 }

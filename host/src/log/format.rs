@@ -53,6 +53,14 @@ impl LogFormat {
         Self::by_ending(path).is_some() || ending.is_some_and(is_text)
     }
 
+    /// The ending that names it; text has others, too.
+    pub(super) fn ending(self) -> &'static str {
+        let mut known = Self::ENDINGS.iter();
+        known
+            .find(|(_, format)| *format == self)
+            .map_or(Self::TEXT[0], |(ending, _)| ending)
+    }
+
     fn by_ending(path: &Path) -> Option<LogFormat> {
         let ending = path.extension()?.to_str()?;
         let mut known = Self::ENDINGS.iter();

@@ -1,5 +1,8 @@
 //! Reads the header of a CSV log: separator, column names, constants in comments.
 
+use super::cell::{is_missing, number};
+use super::iso::iso_ns;
+use super::layout::{BLANKS, LOOK, Layout, names_row};
 use super::lines::Lines;
 use super::reason::LogReason;
 use super::table::LogTable;
@@ -12,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct LogHeader {
     /// The file, for errors.
     path: PathBuf,
-    /// Between two fields: `,`, `;` or tab.
+    /// Between two fields: `,`, `;`, tab or blanks.
     pub separator: u8,
     /// Column names in the file's order, trimmed.
     pub names: Vec<String>,
@@ -21,7 +24,7 @@ pub(super) struct LogHeader {
     /// `# key = value` before the names, with their line.
     constants: Vec<(String, f64, usize)>,
     /// Columns of a table that hold no numbers a row, and what they hold.
-    left_out: Vec<(String, &'static str)>,
+    left_out: Vec<(String, Cow<'static, str>)>,
 }
 
 /// Where a quantity's value comes from.
@@ -45,13 +48,19 @@ impl LogCell {
 
 impl LogHeader {
     /// Reads up to and including the names. Also returns the first data line where the names stood
-    /// in a comment just above it, as numpy writes them.
+    /// in a comment just above it, as numpy and `rostopic` write them. `time` is a name that must be
+    /// among them, where one is known.
     ///
     /// # Errors
-    /// An empty file, UTF-16, or data without names.
-    pub fn read(path: &Path, lines: &mut Lines, time: &str) -> Result<(LogHeader, Option<String>)> {
+    /// An empty file, data without names, names that do not fit the rows or stand further down, and
+    /// decimal commas between commas.
+    pub fn read(
+        path: &Path,
+        lines: &mut Lines,
+        time: Option<&str>,
+    ) -> Result<(LogHeader, Option<String>)> {
         let mut constants = Vec::new();
-        let mut comment = None;
+        let mut above = None;
         loop {
             let number = lines.number + 1;
             let Some(text) = lines.next()? else {
@@ -60,23 +69,43 @@ impl LogHeader {
             if text.trim().is_empty() {
                 continue;
             }
-            if let Some(words) = text.trim_start().strip_prefix('#') {
+            let text = text.to_string();
+            let is_known = |text: &str| time.is_some_and(|time| holds(text, time));
+            if let Some(words) = comment(&text).filter(|_| !is_known(&text)) {
                 if let Some((key, value)) = constant(words) {
                     constants.push((key, value, number));
                 }
-                comment = Some((words.to_string(), number));
+                above = Some((words.to_string(), number));
                 continue;
             }
-            let (names, line, first) = match comment.filter(|_| is_data(text)) {
-                Some((words, line)) if names(&words).contains(&time.to_string()) => {
-                    (words, line, Some(text.to_string()))
+            let in_comment = above.filter(|(words, _)| is_known(words) || names_row(words, &text));
+            let mut ahead = lines.peek(LOOK)?;
+            let (names, line, first) = match in_comment {
+                Some((words, line)) if !is_known(&text) => {
+                    ahead.insert(0, (number, text.clone()));
+                    (words, line, Some(text))
                 }
-                _ => (text.to_string(), number, None),
+                _ => (text, number, None),
             };
+            let layout = Layout {
+                names: &names,
+                line,
+                ahead: &ahead,
+            };
+            if let Some((line, reason)) = layout.fault(is_known(&names)) {
+                let reason = match (reason, time) {
+                    (LogReason::NoNames { .. }, Some(time)) => LogReason::NoNames {
+                        column: Some(time.to_string()),
+                    },
+                    (reason, _) => reason,
+                };
+                return Err(Error::refused(Place::at(path, line, 1), reason));
+            }
+            let separator = layout.separator();
             let header = LogHeader {
                 path: path.to_path_buf(),
-                separator: separator(&names),
-                names: self::names(&names),
+                separator,
+                names: owned(&names, separator),
                 line,
                 constants,
                 left_out: Vec::new(),
@@ -124,11 +153,8 @@ impl LogHeader {
         let place = Place::at(&self.path, self.line, 1);
         let column = name.to_string();
         if let Some((_, holds)) = self.left_out.iter().find(|(left_out, _)| left_out == name) {
+            let holds = holds.clone();
             return Error::refused(place, LogReason::ColumnLeftOut { column, holds });
-        }
-        let is_number = |name: &String| number(name, self.separator).is_some();
-        if self.names.iter().all(is_number) {
-            return Error::refused(place, LogReason::NoNames { column });
         }
         let plain = |name: &str| -> String {
             let letters = name.chars().filter(|letter| letter.is_alphanumeric());
@@ -153,6 +179,9 @@ impl LogHeader {
 
 /// Splits a line at separators outside quotes.
 pub(super) fn fields(line: &str, separator: u8) -> Vec<Cow<'_, str>> {
+    if separator == BLANKS {
+        return line.split_whitespace().map(Cow::Borrowed).collect();
+    }
     if !line.contains('"') {
         return line
             .split(char::from(separator))
@@ -174,6 +203,18 @@ pub(super) fn fields(line: &str, separator: u8) -> Vec<Cow<'_, str>> {
     }
 }
 
+/// Whether a row has more or fewer fields than there are names. A separator behind the last field
+/// of a row, or of the names, makes none.
+pub(super) fn surplus(fields: &mut Vec<Cow<'_, str>>, names: &[String]) -> bool {
+    let (found, expected) = (fields.len(), names.len());
+    if found == expected + 1 && fields.last().is_some_and(|last| last.is_empty()) {
+        fields.pop();
+    } else if found + 1 == expected && names.last().is_some_and(String::is_empty) {
+        fields.push("".into());
+    }
+    fields.len() != expected
+}
+
 /// Without the quotes that the csv crate leaves on when a blank stands before them.
 fn unquoted(field: &str) -> &str {
     let inner = field
@@ -182,19 +223,8 @@ fn unquoted(field: &str) -> &str {
     inner.unwrap_or(field)
 }
 
-/// The number in a field; a comma counts as the decimal point where it cannot separate fields.
-pub(super) fn number(field: &str, separator: u8) -> Option<f64> {
-    match field.parse() {
-        Ok(value) => Some(value),
-        Err(_) if separator != b',' && field.matches(',').count() == 1 && !field.contains('.') => {
-            field.replace(',', ".").parse().ok()
-        }
-        Err(_) => None,
-    }
-}
-
 /// The separator of a header line: the most frequent of `;`, tab and comma.
-fn separator(line: &str) -> u8 {
+pub(super) fn separator(line: &str) -> u8 {
     let count = |separator: u8| fields(line, separator).len();
     let mut best = b',';
     for candidate in [b';', b'\t'] {
@@ -205,18 +235,29 @@ fn separator(line: &str) -> u8 {
     best
 }
 
-fn names(line: &str) -> Vec<String> {
-    fields(line, separator(line))
-        .into_iter()
-        .map(Cow::into_owned)
-        .collect()
+fn owned(line: &str, separator: u8) -> Vec<String> {
+    let names = fields(line, separator).into_iter();
+    names.map(Cow::into_owned).collect()
 }
 
-fn is_data(line: &str) -> bool {
-    let separator = separator(line);
-    fields(line, separator)
-        .iter()
-        .all(|field| number(field, separator).is_some())
+/// Whether a line holds this name as one of its fields.
+fn holds(line: &str, name: &str) -> bool {
+    let has = |separator: u8| fields(line, separator).iter().any(|word| word == name);
+    // What follows the sign of a comment is judged without it.
+    has(separator(line)) || (comment(line).is_none() && has(BLANKS))
+}
+
+/// The words of a line that is a comment: behind `#`, or behind `%` as MATLAB and `rostopic` write.
+pub(super) fn comment(line: &str) -> Option<&str> {
+    line.trim_start().strip_prefix(['#', '%'])
+}
+
+/// Whether all fields hold a value or a gap, one of them a number.
+pub(super) fn is_data(line: &str, separator: u8) -> bool {
+    let cells = fields(line, separator);
+    let is_number = |cell: &str| number(cell, separator).is_some() || iso_ns(cell).is_some();
+    cells.iter().any(|cell| is_number(cell))
+        && cells.iter().all(|cell| is_missing(cell) || is_number(cell))
 }
 
 /// Key and value of `key = value` or `key: value` with a numeric value.

@@ -1,13 +1,26 @@
 //! Time stamps as ISO 8601 writes them: `2026-03-01T12:00:00.123456789+01:00`.
 
-/// Nanoseconds since 1970-01-01T00:00:00Z; none of a text that is no such stamp.
+/// Nanoseconds since 1970-01-01T00:00:00Z, or since midnight of a time of day without a date; none
+/// of a text that is no such stamp.
 ///
-/// Date and time of day are required, between them `T` or a blank; the fraction has up to nine
-/// digits, further ones are cut off. Without an offset the stamp counts as UTC. A leap second is
-/// the first one of the next minute.
+/// Between date and time of day stands `T` or a blank; the date's parts may be parted by `/`. The
+/// fraction has up to nine digits, further ones are cut off. Without an offset the stamp counts as
+/// UTC. A leap second is the first one of the next minute. A time of day has seconds; it may follow
+/// `N days`, as pandas writes durations.
 pub(super) fn iso_ns(text: &str) -> Option<i64> {
     let text = text.trim();
+    // Most cells are numbers.
+    if !text.contains(':') {
+        return None;
+    }
+    if let Some(ns) = day_ns(text) {
+        return Some(ns);
+    }
     let (date, rest) = text.split_once(['T', 't', ' '])?;
+    let date = match date.contains('-') {
+        true => date.into(),
+        false => date.replace('/', "-"),
+    };
     let mut parts = date.split('-');
     let (year, month, day) = (
         digits(parts.next()?, 4)?,
@@ -35,6 +48,29 @@ pub(super) fn iso_ns(text: &str) -> Option<i64> {
     let seconds = (days_since_1970(year, month, day) * 24 + hour) * 3600 + minute * 60 + second;
     let seconds = fits.then_some(seconds - offset_s(zone)?)?;
     seconds.checked_mul(1_000_000_000)?.checked_add(nanosecond)
+}
+
+/// `12:00:00.25`, `0:00:01`, `1 days 00:00:00.01`.
+fn day_ns(text: &str) -> Option<i64> {
+    let (days, clock) = match text
+        .split_once(" days ")
+        .or_else(|| text.split_once(" day, "))
+    {
+        Some((days, clock)) => (days.parse::<i32>().ok()?, clock),
+        None => (0, text),
+    };
+    let (hour, rest) = clock.split_once(':')?;
+    let (minute, second) = rest.split_once(':')?;
+    let (second, fraction) = second.split_once(['.', ',']).unwrap_or((second, "0"));
+    let hour = digits(hour, 2).or_else(|| digits(hour, 1))?;
+    let (minute, second) = (digits(minute, 2)?, digits(second, 2)?);
+    let fits = hour < 24 && minute < 60 && second <= 60;
+    let seconds = ((i64::from(days) * 24 + hour) * 60 + minute) * 60 + second;
+    fits.then(|| {
+        seconds
+            .checked_mul(1_000_000_000)?
+            .checked_add(nanoseconds(fraction)?)
+    })?
 }
 
 /// A number of exactly so many digits.
@@ -102,6 +138,10 @@ mod tests {
             ("2026-03-01T06:30:00-0530", 1_772_366_400_000_000_000),
             ("1969-12-31T23:59:59Z", -1_000_000_000),
             ("2026-03-01T12:00", 1_772_366_400_000_000_000),
+            ("2026/03/01 12:00:00.5", 1_772_366_400_500_000_000),
+            ("12:00:00.25", 43_200_250_000_000),
+            ("0:00:01", 1_000_000_000),
+            ("2 days 00:00:00.010000", 172_800_010_000_000),
         ];
         for (text, ns) in cases {
             assert_eq!(iso_ns(text), Some(ns), "{text}");
@@ -123,6 +163,12 @@ mod tests {
             "26-01-01T00:00:00",
             "2026-01-01T00:00:00é",
             "9999-99-99T99:99:99",
+            "12:00",
+            "25:00:00",
+            "12:60:00",
+            "1:2:3",
+            "999999999999 days 00:00:00",
+            "03/01/2026 12:00:00",
             "2026-01-01-02T00:00:00",
         ];
         for text in texts {

@@ -88,6 +88,7 @@ pub fn merge(first: &RawLog, second: &RawLog, plan: &MergePlan) -> Result<Merged
         log.names.push(own);
         log.columns.push(column);
         log.iso.push(false);
+        log.words.push(None);
     }
     if rows_of_both == 0 {
         return Err(Error::usage(

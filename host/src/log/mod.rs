@@ -2,15 +2,18 @@
 
 mod bam;
 pub(crate) mod cdr;
+mod cell;
 pub mod check;
 mod csv;
 mod excerpts;
 mod folder;
+mod foreign;
 mod format;
 mod header;
 mod holdout;
 pub mod init;
 mod iso;
+mod layout;
 mod lines;
 mod log_set;
 pub(crate) mod mcap_messages;
@@ -34,6 +37,7 @@ mod write;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use bam::BenchFigures;
 pub use check::{LogFinding, Proof, Severity, check};
 pub(crate) use excerpts::excerpts;
 pub use folder::{expanded, unfolded};

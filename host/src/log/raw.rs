@@ -1,15 +1,20 @@
 //! A log's columns as they stand in the file, before a model says what they mean.
 
-use super::bam::{self, BamBench};
+use super::bam::{self, BenchFigures};
+use super::cell::{is_missing, number};
 use super::format::LogFormat;
-use super::header::{LogHeader, fields, number};
+use super::header::{LogHeader, comment, fields, surplus};
 use super::iso::iso_ns;
 use super::lines::Lines;
 use super::reading_limit::ReadingLimit;
 use super::request::LogRequest;
 use super::table::LogTable;
 use crate::error::{Error, Place, Result};
+use crate::output::shortened;
 use std::path::Path;
+
+/// Columns that are named of those that are not read.
+const LISTED: usize = 20;
 
 /// Columns of a log.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -20,6 +25,16 @@ pub struct RawLog {
     pub columns: Vec<Vec<f64>>,
     /// Whether the column holds ISO 8601 time stamps; its values count in s from the first.
     pub iso: Vec<bool>,
+    /// The first cell of each column that is neither a number nor a gap; absent without one.
+    pub words: Vec<Option<String>>,
+    /// Columns that hold something else than a number a row, and what they hold.
+    pub left_out: Vec<(String, String)>,
+    /// What looks wrong with the file, and what to do about it.
+    pub warning: Option<(&'static str, &'static str)>,
+    /// Whether the format says that angles are rad, speeds rad/s and torques N m.
+    pub is_si: bool,
+    /// The bench that recorded it, where the file says.
+    pub bench: Option<BenchFigures>,
 }
 
 impl RawLog {
@@ -34,18 +49,23 @@ impl RawLog {
     /// Reads a log of any format; in the rows asked for, readings must be ones that a sensor gives.
     fn read_checked(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
         match LogFormat::of(path) {
-            LogFormat::Bam => Ok(of_bam(bam::read(
-                &LogRequest::whole(path),
-                None,
-                &mut BamBench::default(),
-            )?)),
+            LogFormat::Bam => {
+                let (motion, bench) = bam::read_alone(&LogRequest::whole(path))?;
+                Ok(of_bam(motion, bench))
+            }
             LogFormat::Csv => read_csv(path, checked),
             format => {
-                let table = LogTable::read(path, format)?;
+                let table = LogTable::read(path, format, None)?;
+                let left_out = table.left_out.into_iter();
                 let log = RawLog {
                     iso: vec![false; table.names.len()],
+                    words: vec![None; table.names.len()],
                     names: table.names,
                     columns: table.columns,
+                    left_out: left_out.map(|(name, holds)| (name, holds.into())).collect(),
+                    warning: table.warning,
+                    is_si: table.is_si,
+                    bench: None,
                 };
                 if let Some(request) = checked {
                     ReadingLimit::new(request, &log.names).hold_table(&log)?;
@@ -74,6 +94,25 @@ impl RawLog {
         Ok(log)
     }
 
+    /// What looks wrong with the file, and what of it is not read; each with what to do about it.
+    pub fn remarks(&self) -> Vec<(String, &'static str)> {
+        let warning = self
+            .warning
+            .map(|(what, remedy)| (what.to_string(), remedy));
+        let holds =
+            |(name, holds): &(String, String)| format!("{:?} holds {holds}", shortened(name));
+        let left_out: Vec<String> = self.left_out.iter().take(LISTED).map(holds).collect();
+        let more = match self.left_out.len().saturating_sub(LISTED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let left_out = (!left_out.is_empty()).then(|| {
+            let what = format!("not read: {}{more}", left_out.join(", "));
+            (what, "only numbers are read, one a row")
+        });
+        warning.into_iter().chain(left_out).collect()
+    }
+
     /// As CSV: what is not a number is an empty cell.
     pub fn to_csv(&self) -> String {
         let mut rows = ::csv::Writer::from_writer(Vec::new());
@@ -89,22 +128,24 @@ impl RawLog {
         String::from_utf8_lossy(&rows.into_inner().unwrap_or_default()).into_owned()
     }
 
+    /// Whether a column is called a time.
+    pub fn called_time(&self, index: usize) -> bool {
+        let name = self.names[index].to_lowercase();
+        name == "t" || name.starts_with("time") || name.starts_with("t_")
+    }
+
     /// The first column that is called a time, else the first that only grows.
     pub fn time(&self) -> Option<usize> {
-        let named = |name: &String| {
-            let name = name.to_lowercase();
-            name == "t" || name.starts_with("time") || name.starts_with("t_")
-        };
         let grows =
             |column: &Vec<f64>| column.len() > 1 && column.windows(2).all(|pair| pair[1] > pair[0]);
-        let named = self.names.iter().position(named);
+        let named = (0..self.names.len()).find(|index| self.called_time(*index));
         named.or_else(|| self.columns.iter().position(grows))
     }
 }
 
 fn read_csv(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
     let mut lines = Lines::open(path)?;
-    let (header, first) = LogHeader::read(path, &mut lines, "")?;
+    let (header, first) = LogHeader::read(path, &mut lines, None)?;
     let mut rows = CsvRows {
         limit: checked.map(|request| ReadingLimit::new(request, &header.names)),
         separator: header.separator,
@@ -112,7 +153,9 @@ fn read_csv(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
         log: RawLog {
             columns: vec![Vec::new(); header.names.len()],
             iso: vec![false; header.names.len()],
+            words: vec![None; header.names.len()],
             names: header.names,
+            ..RawLog::default()
         },
     };
     if let Some(line) = first {
@@ -122,7 +165,7 @@ fn read_csv(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
         let at = lines.number + 1;
         match lines.next()? {
             None => return Ok(rows.log),
-            Some(line) if line.trim().is_empty() || line.trim_start().starts_with('#') => {}
+            Some(line) if line.trim().is_empty() || comment(line).is_some() => {}
             Some(line) => rows.take(line, at)?,
         }
     }
@@ -139,10 +182,18 @@ struct CsvRows<'a> {
 
 impl CsvRows<'_> {
     fn take(&mut self, line: &str, at: usize) -> Result<()> {
-        let cells = fields(line, self.separator);
+        let mut cells = fields(line, self.separator);
+        let found = cells.len();
+        let is_wide = surplus(&mut cells, &self.log.names) && found > self.log.names.len();
+        if let Some(limit) = self.limit.as_ref().filter(|_| is_wide) {
+            limit.refuse_wide(at, found, self.log.names.len())?;
+        }
         for index in 0..self.log.columns.len() {
             let cell = cells.get(index).map_or("", |cell| cell);
             let value = number(cell, self.separator).or_else(|| self.stamp_s(index, cell));
+            if value.is_none() && self.log.words[index].is_none() && !is_missing(cell) {
+                self.log.words[index] = Some(cell.to_string());
+            }
             let value = value.unwrap_or(f64::NAN);
             let row = self.log.columns[index].len();
             if let Some(limit) = &self.limit {
@@ -166,12 +217,17 @@ impl CsvRows<'_> {
     }
 }
 
-fn of_bam(motion: super::Motion) -> RawLog {
-    let mut log = RawLog::default();
+fn of_bam(motion: super::Motion, bench: Option<BenchFigures>) -> RawLog {
+    let mut log = RawLog {
+        is_si: true,
+        bench,
+        ..RawLog::default()
+    };
     let mut push = |name: &str, column: Option<Vec<f64>>| {
         if let Some(column) = column {
             log.names.push(name.into());
             log.iso.push(false);
+            log.words.push(None);
             log.columns.push(column);
         }
     };

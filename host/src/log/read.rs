@@ -6,7 +6,7 @@ use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::{Before, LogRow};
 use super::short::ShortMotions;
-use super::visit::visit;
+use super::visit::{FileFacts, visit};
 use super::{LogFinding, Motion, MotionSource, bam};
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
@@ -49,18 +49,22 @@ pub fn read_with_findings(
     let mut bench = BamBench::default();
     for request in &expanded(requests)? {
         if request.is_json() {
-            motions.push(bam::read(request, columns.arm, &mut bench)?);
+            motions.push(bam::read(request, columns, &mut bench)?);
         } else {
-            let (long, short) = read_rows(request, columns)?;
+            let (long, short, facts) = read_rows(request, columns)?;
             motions.extend(long);
+            findings.extend(facts.finding(&request.path));
             findings.extend(short.warning(&request.path));
         }
     }
     Ok((motions, findings))
 }
 
-/// The motions of a log that are long enough, and those that are not.
-fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<(Vec<Motion>, ShortMotions)> {
+/// The motions of a log that are long enough, those that are not, and what is known of the file.
+fn read_rows(
+    request: &LogRequest,
+    columns: &LogColumns,
+) -> Result<(Vec<Motion>, ShortMotions, FileFacts)> {
     let mut cutter = Cutter {
         request,
         columns,
@@ -89,7 +93,7 @@ fn read_rows(request: &LogRequest, columns: &LogColumns) -> Result<(Vec<Motion>,
     }
     match short.refusal(&request.path).filter(|_| long.is_empty()) {
         Some((place, reason)) => Err(Error::refused(place, reason)),
-        None => Ok((long, short)),
+        None => Ok((long, short, facts)),
     }
 }
 

@@ -44,6 +44,18 @@ impl<'a> ReadingLimit<'a> {
         }
     }
 
+    /// Refuses a row that has more fields than there are names: which is which nothing tells.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn refuse_wide(&self, line: usize, found: usize, expected: usize) -> Result<()> {
+        let place = Place::at(&self.request.path, line, expected + 1);
+        Err(Error::refused(
+            place,
+            LogReason::FieldCount { found, expected },
+        ))
+    }
+
     /// Refuses a value of a row, counted from 0, that is `found` at this line of the column.
     ///
     /// # Errors

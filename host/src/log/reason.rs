@@ -1,10 +1,15 @@
 //! Why a log is refused: the data, its sentence, and the remedy.
 
+mod words;
+
 use super::LEAST_ROWS;
+use super::cell::decimal_comma;
 use super::lines::LONGEST_LINE;
 use super::reading_limit::LARGEST_READING;
 use crate::error::Reason;
+use crate::output::shortened;
 use std::borrow::Cow;
+use words::{and_no, listed, meant, of_column, of_lines, quoted, scientific, short};
 
 /// What a field with a time stamp must be.
 pub(super) const STAMP: &str = "a time stamp such as 2026-03-01T12:00:00.5Z";
@@ -27,11 +32,31 @@ pub enum LogReason {
     #[error("the log holds no header line")]
     NoHeader,
     /// Numbers where the column names should be.
-    #[error("numbers where the column names should be, and no column '{column}'")]
+    #[error("numbers where the column names should be{}", and_no(column))]
     NoNames {
-        /// A column that the model reads.
-        column: String,
+        /// A column that the model reads, where there is a model.
+        column: Option<String>,
     },
+    /// Column names below lines of another kind.
+    #[error("this names no columns of the rows; line {line} looks like the line of column names")]
+    NamesBelow {
+        /// Line that looks like the names.
+        line: usize,
+    },
+    /// A row of words between names and numbers.
+    #[error("a row of words between the column names and the numbers, of units perhaps")]
+    UnitsRow,
+    /// As many names as there are no fields.
+    #[error("the line of column names has {names}, the rows have {fields} fields")]
+    NamesAndFields {
+        /// Names in the header.
+        names: usize,
+        /// Fields of most rows.
+        fields: usize,
+    },
+    /// Commas that are both decimal point and separator.
+    #[error("decimal commas in fields that commas separate")]
+    DecimalCommas,
     /// A column that the log does not have.
     #[error(
         "no column '{column}'{} The log has: {}",
@@ -52,7 +77,7 @@ pub enum LogReason {
         /// Its name.
         column: String,
         /// What it holds.
-        holds: &'static str,
+        holds: Cow<'static, str>,
     },
     /// A column that the log has twice.
     #[error("column '{column}' stands there twice")]
@@ -93,6 +118,16 @@ pub enum LogReason {
         cell: Box<LogReason>,
         /// Rows of which the same is wrong, beside the first.
         more: usize,
+    },
+    /// Cells, or rows, that are wrong in one way.
+    #[error("{cell}; and {more} more like it, in {}", of_lines(lines, *more))]
+    WrongCells {
+        /// What is wrong with the first of them.
+        cell: Box<LogReason>,
+        /// How many there are beside the first.
+        more: usize,
+        /// Lines of the first of these.
+        lines: Vec<usize>,
     },
     /// A number that no sensor of a joint gives.
     #[error(
@@ -215,8 +250,17 @@ pub enum LogReason {
         /// Time of the entry before it.
         previous_s: f64,
     },
+    /// A fact of the run that the model's payload is, and that the log does not say.
+    #[error(
+        "no number '{}' beside the entries, which the model's payload is",
+        shortened(key)
+    )]
+    NoFact {
+        /// Its key.
+        key: String,
+    },
     /// A bench's own figures that are not the model's.
-    #[error("the log's {quantity} is {found:.4} {unit}, the model's link has {expected:.4} {unit}")]
+    #[error("the log's {quantity} is {found:.4} {unit}, the model has {expected:.4} {unit}")]
     OtherRig {
         /// What was compared.
         quantity: &'static str,
@@ -247,7 +291,22 @@ impl Reason for LogReason {
             LineTooLong => "this is no CSV log; name a text file with one sample per line",
             NotUtf8 { .. } => "save the log as UTF-8 text",
             NoHeader => "record again: a log is a line of column names, then a line per sample",
-            NoNames { .. } => "put a line of column names above the first sample",
+            NoNames { .. } => {
+                "put a line of column names above the first sample, such as time_s,angle_rad"
+            }
+            NamesBelow { line } => {
+                return format!("delete the lines above line {line}, or begin each of them with #")
+                    .into();
+            }
+            UnitsRow => "delete this line; units stand in the names: angle [deg], angle_deg",
+            NamesAndFields { names, fields } if names < fields => {
+                "name every column in the header, in the order of the fields"
+            }
+            NamesAndFields { .. } => {
+                "the names have another separator than the fields, or name columns that are not \
+                 there: mend the header"
+            }
+            DecimalCommas => "export with ; between the fields, or with decimal points",
             NoColumn { column, .. } => {
                 return format!(
                     "name the column under [log] in the model, or, if it never changes, write \
@@ -260,12 +319,16 @@ impl Reason for LogReason {
             FieldCount { .. } => {
                 "the line is broken off or joined with another: delete it, or record again"
             }
+            WrongField { found, .. } if decimal_comma(found).is_some() => {
+                return DecimalCommas.remedy();
+            }
             WrongField { .. } => {
                 "the model reads this column: delete the line, or leave it out by a row range \
                  such as log.csv:26-139"
             }
             TimeStamp { .. } => "write unit = \"iso8601\" for this column in the model's [log]",
             WrongColumn { cell, .. } => return of_column(cell),
+            WrongCells { cell, .. } => return cell.remedy(),
             NoReading { .. } => {
                 "check the column's unit in the model's [log], or in its name where there is no \
                  model; of a broken cell, delete the value, which leaves a gap"
@@ -273,6 +336,10 @@ impl Reason for LogReason {
             EmptyColumn { .. } => {
                 "record it (goals: by `handstand replay --record`), or take the column out of the \
                  model's [log]"
+            }
+            TimeNotIncreasing { time_s, previous_s } if time_s == previous_s => {
+                "the clock is coarser than the rows: log times with more digits, or keep one row \
+                 of each time; of rows a fixed period apart, write their number times the period"
             }
             TimeNotIncreasing { .. } => {
                 "cut the log there, mark the recordings in a segment column, or name a range of \
@@ -300,76 +367,18 @@ impl Reason for LogReason {
             WrongEntry { .. } => {
                 "leave the entry out by a range such as log.json:0-99, or record again"
             }
-            OtherRig { .. } => "give the model of the rig that the log names, or mend its link",
+            NoFact { .. } => {
+                "payload = { column = \"mass\", unit = \"kg\", at_m = LENGTH } is the key of BAM"
+            }
+            OtherRig { .. } => {
+                "mend the model's link; logs of several weights fit one model whose link is the arm \
+                 alone, with payload = { column = \"mass\", unit = \"kg\", at_m = LENGTH } in its \
+                 [log]"
+            }
             OtherGain { .. } => "give the logs of one gain together: a model's drive has one gain",
             EntryTime { .. } => {
                 "ask for a range of entries without the step, such as log.json:0-99"
             }
         })
-    }
-}
-
-/// What to do about a column all of whose cells are wrong as this one is.
-fn of_column(cell: &LogReason) -> Cow<'_, str> {
-    let WrongField {
-        found, expected, ..
-    } = cell
-    else {
-        return cell.remedy();
-    };
-    let is_number = found.replacen(',', ".", 1).parse::<f64>().is_ok();
-    Cow::Borrowed(match *expected {
-        _ if found.is_empty() => "record this column, or name another one in the model's [log]",
-        STAMP if is_number => {
-            "write the unit of these numbers for this column in the model's [log]: \
-             unit = \"s\", \"ms\", \"us\" or \"ns\""
-        }
-        STAMP => {
-            "save the times as such stamps, or as numbers with their unit in the model's [log]"
-        }
-        FLAG => "save this column as 0 and 1, or take it out of the model's [log]",
-        _ => {
-            "name a column of numbers in the model's [log], or save this one as numbers with a \
-             decimal point"
-        }
-    })
-}
-
-fn meant(nearest: &Option<String>) -> String {
-    match nearest {
-        Some(nearest) => format!("; did you mean '{nearest}'?"),
-        None => ".".to_string(),
-    }
-}
-
-/// Up to 40 names.
-fn listed(names: &[String]) -> String {
-    let shown: Vec<&str> = names
-        .iter()
-        .take(40)
-        .map(|name| if name.is_empty() { "(unnamed)" } else { name })
-        .collect();
-    let more = if names.len() > 40 { ", ..." } else { "" };
-    format!("{}{more}", shown.join(", "))
-}
-
-/// A number of any size in few characters.
-fn scientific(value: f64) -> String {
-    format!("{value:.3e}")
-}
-
-/// A time with all its digits, unless it is too large to be one.
-fn short(time_s: f64) -> String {
-    match time_s.abs() < 1e15 {
-        true => time_s.to_string(),
-        false => format!("{time_s:e}"),
-    }
-}
-
-/// What a field holds, up to 40 characters.
-fn quoted(text: &str) -> String {
-    match text {
-        "" => "nothing".to_string(),
-        text => format!("'{}'", text.chars().take(40).collect::<String>()),
     }
 }

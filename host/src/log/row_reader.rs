@@ -1,6 +1,7 @@
 //! Turns the lines of a CSV log into rows.
 
-use super::header::{LogCell, LogHeader, fields, number};
+use super::cell::{is_missing, number};
+use super::header::{LogCell, LogHeader, fields, surplus};
 use super::iso::iso_ns;
 use super::reading_limit::beyond_readings;
 use super::reason::{FLAG, LogReason, STAMP};
@@ -106,15 +107,16 @@ impl<'a> RowReader<'a> {
 
     /// Fills `row` from one line.
     ///
-    /// An empty field, or one that says `nan`, is a gap: that quantity is not a number in this row.
+    /// An empty field, or one that says `nan`, `NA`, `NULL` or the like, is a gap: that quantity is
+    /// not a number in this row.
     ///
     /// # Errors
     /// Too few or too many fields, fields that hold something else than a finite number, and a row
     /// without a time.
     pub fn fill(&self, line: &str, at: usize, row: &mut LogRow) -> Result<()> {
-        let fields = fields(line, self.separator);
+        let mut fields = fields(line, self.separator);
         let (found, expected) = (fields.len(), self.names.len());
-        if found != expected {
+        if surplus(&mut fields, &self.names) {
             let place = Place::at(self.path, at, found.min(expected) + 1);
             let reason = LogReason::FieldCount { found, expected };
             return Err(Error::refused(place, reason));
@@ -270,7 +272,7 @@ impl Cells<'_> {
             }
             (cell, _) => {
                 let text = self.text(cell);
-                text.is_empty() || text.eq_ignore_ascii_case("nan")
+                is_missing(&text)
             }
         }
     }

@@ -6,7 +6,8 @@ use super::header::LogHeader;
 use super::row::LogRow;
 use super::row_reader::RowReader;
 use super::table::LogTable;
-use crate::error::Result;
+use super::{LogFinding, Severity};
+use crate::error::{Place, Result};
 use crate::model::LogColumns;
 use std::path::Path;
 
@@ -17,6 +18,23 @@ pub struct FileFacts {
     pub sha256: String,
     /// Data rows, unreadable ones included.
     pub rows: usize,
+    /// What looks wrong with the file as a whole, and what to do about it.
+    pub warning: Option<(&'static str, &'static str)>,
+}
+
+impl FileFacts {
+    /// What looks wrong with this file, as a finding.
+    pub(super) fn finding(&self, path: &Path) -> Option<LogFinding> {
+        let (what, remedy) = self.warning?;
+        Some(LogFinding {
+            kind: "file",
+            severity: Severity::Warn,
+            place: Some(Place::file(path)),
+            what: what.to_string(),
+            remedy: remedy.to_string(),
+            proof: None,
+        })
+    }
 }
 
 /// Hands every data row of a log to `visitor`, with its number counted from 0.
@@ -36,7 +54,7 @@ pub fn visit(
     if matches!(format, LogFormat::Csv | LogFormat::Bam) {
         return csv::visit(path, columns, visitor);
     }
-    let table = LogTable::read(path, format)?;
+    let table = LogTable::read(path, format, Some(&columns.time.name))?;
     let header = LogHeader::of_table(path, &table);
     let reader = RowReader::new(path, columns, &header)?;
     let mut row = LogRow {
@@ -52,5 +70,6 @@ pub fn visit(
     Ok(FileFacts {
         rows: table.rows(),
         sha256: table.sha256,
+        warning: table.warning,
     })
 }

@@ -149,6 +149,8 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("g", Dimension::Mass, 1e-3),
     ("1", Dimension::Ratio, 1.0),
     ("%", Dimension::Ratio, 1e-2),
+    // A register or timer value, a share of its full scale.
+    ("counts", Dimension::Ratio, f64::NAN),
 ];
 
 /// A unit with its factor to SI.
@@ -164,7 +166,7 @@ pub struct Unit {
 
 impl Unit {
     /// The unit of this name, of a hinge where one of slides has the same; `scale` is what a column
-    /// says under [`Unit::scale_key`]: counts per turn, or N m per ampere.
+    /// says under [`Unit::scale_key`]: counts per turn or of the full scale, or N m per ampere.
     pub fn named(name: &str, scale: Option<f64>) -> Option<Unit> {
         let dimension = UNITS.iter().find(|(known, _, _)| *known == name)?.1;
         Unit::of(name, dimension, scale)
@@ -178,6 +180,7 @@ impl Unit {
         let si = match (*name, scale) {
             ("ticks", Some(ticks)) if *dimension == Dimension::Length => 1.0 / ticks,
             ("ticks", Some(ticks)) => TAU / ticks,
+            ("counts", Some(full_scale)) => 1.0 / full_scale,
             ("A", Some(constant)) => constant,
             ("mA", Some(constant)) => 1e-3 * constant,
             _ => *factor,
@@ -195,6 +198,7 @@ impl Unit {
         match (name, dimension) {
             ("ticks", Dimension::Length) => Some("ticks_per_m"),
             ("ticks", _) => Some("ticks_per_turn"),
+            ("counts", _) => Some("full_scale"),
             ("A" | "mA", Dimension::Force) => Some("force_constant_n_a"),
             ("A" | "mA", _) => Some("torque_constant_nm_a"),
             _ => None,
@@ -206,6 +210,7 @@ impl Unit {
         match self.name {
             "ticks" if self.dimension == Dimension::Length => Some(1.0 / self.si),
             "ticks" => Some(TAU / self.si),
+            "counts" => Some(1.0 / self.si),
             "A" => Some(self.si),
             "mA" => Some(1e3 * self.si),
             _ => None,

@@ -4,7 +4,10 @@
 pub mod append_file;
 pub mod number;
 pub mod plot;
+mod shortened;
 pub mod table;
+
+pub use shortened::{readable, shortened};
 
 use crate::error::{Error, Result};
 use std::io::{ErrorKind, Write as _};

@@ -126,3 +126,65 @@ fn a_good_log_passes_its_check() {
     let found = findings["findings"].as_array().unwrap();
     assert!(found.iter().any(|finding| finding["kind"] == "excitation"));
 }
+
+#[test]
+fn a_model_and_a_log_that_are_swapped_are_told_so() {
+    let bench = Bench::new();
+    for (line, code) in [
+        ("compare a.csv model.toml", 2),
+        ("fit a.csv model.toml --free link1.com_m -o new.toml", 2),
+        ("log check a.csv model.toml", 2),
+        ("compare a.csv b.csv", 3),
+        ("fit a.csv b.csv --free link1.com_m -o new.toml", 3),
+    ] {
+        let ran = bench.run(line);
+        assert_eq!(ran.code, Some(code), "{line}: {ran:?}");
+        assert!(
+            ran.stderr.contains("are the two swapped?"),
+            "{line}: {}",
+            ran.stderr
+        );
+    }
+}
+
+#[test]
+fn a_log_that_cannot_be_read_is_refused_alike_with_and_without_a_model() {
+    let bench = Bench::new();
+    let good = bench.get("a.csv");
+    let (header, rows) = good.split_once('\n').unwrap();
+    bench.put(
+        "commas.csv",
+        format!("{header}\n{}", rows.replace('.', ",")),
+    );
+    bench.put(
+        "wide.csv",
+        format!("{header}\n{}", rows.replace('\n', ",1.5,2.5\n")),
+    );
+    bench.put("scope.csv", format!("Model,A1\nSamples,400\n\n{good}"));
+    bench.put("headless.csv", rows);
+    bench.put("packed.csv.gz", b"\x1f\x8b\x08\0");
+    for (file, said) in [
+        ("commas.csv", "decimal commas"),
+        (
+            "wide.csv",
+            "the line of column names has 2, the rows have 4 fields",
+        ),
+        ("scope.csv", "line 4 looks like the line of column names"),
+        ("headless.csv", "numbers where the column names should be"),
+        ("packed.csv.gz", "packed by gzip"),
+    ] {
+        let read = [format!("init {file}"), format!("log plot {file}")];
+        for line in read {
+            let ran = bench.run(&line);
+            assert_eq!(ran.code, Some(3), "{line}: {ran:?}");
+            assert!(ran.stderr.contains(said), "{line}: {}", ran.stderr);
+        }
+        let check = bench.run(&format!("log check model.toml {file} --json"));
+        let findings = check.json()["findings"].as_array().unwrap().clone();
+        let refused = findings
+            .iter()
+            .filter(|f| f["severity"] == "refused")
+            .count();
+        assert_eq!((check.code, refused), (Some(1), 1), "{file}: {findings:#?}");
+    }
+}

@@ -37,7 +37,7 @@ pub struct EachArgs {
 
 /// Diagnoses what is not done yet.
 pub fn run(folder: &Path, args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
-    let model = Model::load(&args.model)?;
+    let model = input::model(&args.model)?;
     let text = input::text(&args.model)?;
     let file = ModelFile {
         path: &args.model,

@@ -7,6 +7,7 @@
 use crate::cli::page::PageFile;
 use crate::cli::{ExitStatus, Talk, input};
 use handstand::log::{LogRequest, RawLog};
+use handstand::output::readable;
 use handstand::report::{raw_html, raw_text};
 use handstand::{Error, Result};
 use serde_json::{Value, json};
@@ -28,11 +29,14 @@ pub struct LogPlotArgs {
 pub fn run(args: &LogPlotArgs, talk: &Talk) -> Result<ExitStatus> {
     args.page.vacant()?;
     let log = RawLog::read_request(&args.log)?;
+    for (what, remedy) in log.remarks() {
+        talk.say(&format!("{}: {what} ({remedy})", args.log));
+    }
     for column in &args.columns {
         if !log.names.contains(column) {
             return Err(Error::usage(
                 format!("{} has no column `{column}`", args.log),
-                format!("it has {}", log.names.join(", ")),
+                format!("it has {}", readable(log.names.join(", "))),
             ));
         }
     }

@@ -7,7 +7,7 @@ use super::trial::Trial;
 use crate::error::{Place, Result};
 use crate::log::{LogFinding, Motion, Proof, Severity};
 use crate::model::edit::{changed_lines, set_reading};
-use crate::model::{Angles, Dimension, Model, Unit};
+use crate::model::{Angles, Dimension, JointColumns, MeasuredSignal, Model, Unit};
 use std::path::Path;
 
 /// A model's file: its path, for messages, and its text.
@@ -39,7 +39,7 @@ pub(super) fn finding(found: &Found, model: &Model, file: ModelFile) -> Result<L
             false => Severity::Refuse,
         },
         place: Some(Place::file(file.path)),
-        what: format!("{}; {}", what(&trial.remedy, model), proof(trial)),
+        what: format!("{}; {}", what(&trial.remedy, model), proof(trial, model)),
         remedy,
         proof: Some(Proof {
             before_rad: trial.before_rad,
@@ -188,15 +188,22 @@ fn written_in(quantity: LogColumn, unit: &Unit, model: &Model) -> String {
 }
 
 /// "as given the model leaves 83 % of the motion unexplained, 512 mrad; so read, 4 %, 21 mrad".
-fn proof(trial: &Trial) -> String {
+fn proof(trial: &Trial, model: &Model) -> String {
+    let milli = milli(model);
     format!(
-        "as given the model leaves {} of the motion unexplained ({} mrad), with the remedy {} ({} \
-         mrad)",
+        "as given the model leaves {} of the motion unexplained ({} {milli}), with the remedy {} \
+         ({} {milli})",
         percent(trial.before),
         mrad(trial.before_rad),
         percent(trial.after),
         mrad(trial.after_rad),
     )
+}
+
+/// The unit of errors of all joints together: mm where all slide.
+fn milli(model: &Model) -> &'static str {
+    let signals: Vec<MeasuredSignal> = model.log.joints.iter().map(JointColumns::signal).collect();
+    MeasuredSignal::pooled(&signals).milli()
 }
 
 fn percent(share: f64) -> String {
@@ -257,9 +264,10 @@ pub(super) fn unusable(
              it: a hand holds it"
         ),
     };
+    let milli = milli(model);
     let proof = format!(
-        "with those rows the model leaves {} of the motion unexplained ({} mrad), without {} ({} \
-         mrad)",
+        "with those rows the model leaves {} of the motion unexplained ({} {milli}), without {} \
+         ({} {milli})",
         percent(left_out.before),
         mrad(left_out.before_rad),
         percent(left_out.after),
@@ -326,4 +334,32 @@ fn kept(left_out: &LeaveOut, motions: &[Motion], origins: &[Origin]) -> Vec<Stri
         .into_iter()
         .map(|(index, from, to)| format!("{}:{from}-{to}", origins[index].log));
     named.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_joints_that_slide_are_in_mm() {
+        let rig = |axis: &str, unit: &str| {
+            let text = format!(
+                "[rig]\nname = \"a\"\nangle_zero = \"hanging\"\n[[link]]\ncom_m = 0.1\nmass_kg = 0.2\n\
+                 inertia_kg_m2 = 1e-3\n[[joint]]\ndrive = \"torque\"\n{axis}[log]\n\
+                 time = {{ column = \"t\", unit = \"s\" }}\n[[log.joint]]\n\
+                 position = {{ column = \"x\", unit = \"{unit}\" }}\n\
+                 input = {{ column = \"u\", unit = \"{}\" }}\n",
+                if unit == "m" { "N" } else { "N m" }
+            );
+            Model::parse(&text, Path::new("a.toml")).unwrap()
+        };
+        assert_eq!(
+            milli(&rig(
+                "axis = \"slide\"\nslide_rad = 1.5707963267948966\n",
+                "m"
+            )),
+            "mm"
+        );
+        assert_eq!(milli(&rig("", "rad")), "mrad");
+    }
 }

@@ -1,17 +1,18 @@
 //! The findings of a check.
 
 use crate::error::{Place, Reason};
+use crate::output::readable;
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// Findings of one kind shown per file; the rest are counted.
-pub(super) const SHOWN: usize = 20;
+const SHOWN: usize = 5;
 
 /// How many findings of a kind are shown before the one that counts the rest: none where all have
 /// one cause, which one remedy mends.
 fn shown(kind: &str) -> usize {
     match kind {
-        "wrap" => 0,
+        "wrap" | "time" | "jump" | "payload" | "turned" => 0,
         _ => SHOWN,
     }
 }
@@ -97,7 +98,8 @@ pub(super) type Advice<'a> = (String, &'a str);
 pub(super) struct Findings {
     /// In the order found.
     pub list: Vec<LogFinding>,
-    counts: BTreeMap<&'static str, (usize, Option<LogFinding>)>,
+    /// By kind and remedy.
+    counts: BTreeMap<(&'static str, String), (usize, Option<LogFinding>)>,
 }
 
 impl Findings {
@@ -117,13 +119,6 @@ impl Findings {
         self.add(kind, Severity::Refuse, Some(place), words);
     }
 
-    /// Counts so many more of a kind that has been shown often enough.
-    pub fn count(&mut self, kind: &'static str, more: usize) {
-        if more > 0 {
-            self.counts.entry(kind).or_default().0 += more;
-        }
-    }
-
     /// Adds what a file has at most once.
     pub fn extend(&mut self, findings: impl IntoIterator<Item = LogFinding>) {
         self.list.extend(findings);
@@ -135,11 +130,12 @@ impl Findings {
             kind,
             severity,
             place,
-            what: words.0,
-            remedy: words.1.to_string(),
+            what: readable(words.0),
+            remedy: readable(words.1),
             proof: None,
         };
-        let (count, first_hidden) = self.counts.entry(kind).or_default();
+        let key = (kind, finding.remedy.clone());
+        let (count, first_hidden) = self.counts.entry(key).or_default();
         *count += 1;
         if *count <= shown(kind) {
             self.list.push(finding);
@@ -150,7 +146,7 @@ impl Findings {
 
     /// Ends a file: says how many of each kind were not shown.
     pub fn close(&mut self) {
-        for (kind, (count, hidden)) in std::mem::take(&mut self.counts) {
+        for ((kind, _), (count, hidden)) in std::mem::take(&mut self.counts) {
             if let Some(first) = hidden {
                 let what = match count - shown(kind) - 1 {
                     0 => first.what,

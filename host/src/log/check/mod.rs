@@ -68,7 +68,10 @@ pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<LogFinding>> 
                     (true, Err(error)) => file.unread(error),
                 },
             )
-            .map(|facts| facts.rows)
+            .map(|facts| {
+                file.findings.extend(facts.finding(&request.path));
+                facts.rows
+            })
         };
         file.close_cells();
         match read {
@@ -163,8 +166,7 @@ impl<'a> FileCheck<'a> {
     }
 
     fn json(&mut self) -> Result<usize> {
-        let arm = self.model.log.arm;
-        let motion = bam::read(self.request, arm, &mut BamBench::default())?;
+        let motion = bam::read(self.request, &self.model.log, &mut BamBench::default())?;
         for index in 0..motion.len() {
             self.take(&LogRow::of(&motion, index));
         }
@@ -187,9 +189,17 @@ impl<'a> FileCheck<'a> {
             self.close_motion();
         }
         let forward = self.sampling.take(row, fresh, self.findings);
-        // A sample out of order would spoil every difference after it.
+        // A sample out of order would spoil every difference after it; after a restart, that is one
+        // to the samples before.
         if !forward {
-            return;
+            if self
+                .previous
+                .as_ref()
+                .is_none_or(|previous| row.time_s >= previous.time_s)
+            {
+                return;
+            }
+            self.close_motion();
         }
         self.rows_left.take(row.line, row.time_s);
         self.empty.take(row);

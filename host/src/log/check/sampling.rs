@@ -13,7 +13,7 @@ const SHORTEST_S: f64 = 1e-15;
 /// Bins from there to some 10^9 s.
 const BINS: usize = 2800;
 /// Gaps remembered with their place.
-const LARGEST: usize = 20;
+const LARGEST: usize = 3;
 /// Samples of a joint lie so far apart, s.
 const PLAUSIBLE_S: std::ops::RangeInclusive<f64> = 50e-6..=1.0;
 /// An interval of more medians than this is a gap.

@@ -73,8 +73,50 @@ fn many_alike_are_counted() {
         .iter()
         .filter(|f| f.what.contains("not a number"))
         .collect();
-    assert_eq!(refused.len(), 21);
-    assert!(refused[20].what.contains("more like it"));
+    // One for each column.
+    assert_eq!(refused.len(), 2, "{refused:#?}");
+    let counted = |f: &&LogFinding| f.what.contains(" more like it, in lines ");
+    assert!(refused.iter().all(counted), "{refused:#?}");
+}
+
+#[test]
+fn restarts_and_doubled_times_are_one_finding_each() {
+    let text = |time: fn(usize) -> f64| {
+        let row = |k: usize| format!("{},{},0\n", time(k), 0.5 * (0.1 * k as f64).sin());
+        format!("t_s,q,u\n{}", (0..400).map(row).collect::<String>())
+    };
+    let refused = |text: &str| {
+        let all = found(text, &servo()).into_iter();
+        let refused: Vec<_> = all.filter(|f| f.severity == Severity::Refuse).collect();
+        assert_eq!(refused.len(), 1, "{refused:#?}");
+        (refused[0].what.clone(), refused[0].remedy.clone())
+    };
+    let (what, remedy) = refused(&text(|k| 0.01 * (k % 40) as f64));
+    assert!(what.ends_with("; and 8 more like it"), "{what}");
+    assert!(remedy.contains("segment column"), "{remedy}");
+    // Differences across a restart say nothing of signs.
+    let swing = |k: usize| (0.05 * k as f64).cos();
+    let row = |k: usize| {
+        format!(
+            "{},{:.5},{:.5}\n",
+            0.01 * (k % 63) as f64,
+            swing(k),
+            swing(k + 4)
+        )
+    };
+    let restarts: String = (0..630).map(row).collect();
+    let findings = found(&format!("t_s,q,u\n{restarts}"), &servo());
+    assert!(
+        !findings.iter().any(|f| f.kind == "relation"),
+        "{findings:#?}"
+    );
+    // A clock coarser than the rows: each stamp stands there twice.
+    let (what, remedy) = refused(&text(|k| 0.02 * (k / 2) as f64));
+    assert!(what.ends_with("; and 199 more like it"), "{what}");
+    assert!(
+        remedy.contains("coarser") && !remedy.contains("segment"),
+        "{remedy}"
+    );
 }
 
 #[test]

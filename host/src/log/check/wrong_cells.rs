@@ -1,11 +1,13 @@
-//! Cells that cannot be read: a column of which hardly one can is one finding, single ones are one
-//! each.
+//! Cells and rows that cannot be read: those of one column that are wrong in one way are one
+//! finding, and so are rows of another number of fields.
 
-use super::finding::{Findings, SHOWN};
+use super::finding::Findings;
 use crate::error::{Error, Place};
 use crate::log::LogReason;
 use std::collections::BTreeMap;
 
+/// Lines that are named beside the first.
+const NAMED: usize = 8;
 /// A column is wrong as a whole where so many of ten rows are wrong in it alike.
 const OF_TEN: usize = 9;
 
@@ -15,6 +17,7 @@ enum Fault {
     Stamp,
     Nothing,
     Beyond,
+    Fields,
     Not(&'static str),
 }
 
@@ -22,8 +25,9 @@ enum Fault {
 #[derive(Debug, Default)]
 struct Alike {
     cells: usize,
-    /// The first of them, one more than are shown.
-    first: Vec<(Place, LogReason)>,
+    first: Option<(Place, LogReason)>,
+    /// Lines of those after the first, some of them.
+    lines: Vec<usize>,
 }
 
 /// Running account of the rows of a file.
@@ -49,8 +53,10 @@ impl WrongCells {
         self.rows += 1;
         let alike = self.alike.entry(key).or_default();
         alike.cells += 1;
-        if alike.first.len() <= SHOWN {
-            alike.first.push((place.clone(), reason));
+        match (&alike.first, place.line) {
+            (None, _) => alike.first = Some((place.clone(), reason)),
+            (Some(_), Some(line)) if alike.lines.len() < NAMED => alike.lines.push(line),
+            _ => {}
         }
         Ok(())
     }
@@ -61,19 +67,34 @@ impl WrongCells {
         let is_whole = |alike: &Alike| alike.cells > 1 && 10 * alike.cells >= OF_TEN * rows;
         let (whole, single): (Vec<Alike>, Vec<Alike>) = alike.into_values().partition(is_whole);
         let any = !whole.is_empty();
-        for Alike { cells, first } in whole {
-            if let Some((place, cell)) = first.into_iter().next() {
+        for Alike { cells, first, .. } in whole {
+            if let Some((place, cell)) = first {
                 let (cell, more) = (Box::new(cell), cells - 1);
                 findings.refuse("column", place, &LogReason::WrongColumn { cell, more });
             }
         }
-        let cells: usize = single.iter().map(|alike| alike.cells).sum();
-        let mut first: Vec<_> = single.into_iter().flat_map(|alike| alike.first).collect();
-        first.sort_by_key(|(place, _)| place.line);
-        for (place, reason) in &first {
-            findings.refuse("cell", place.clone(), reason);
+        let mut single: Vec<_> = single
+            .into_iter()
+            .filter_map(
+                |Alike {
+                     cells,
+                     first,
+                     lines,
+                 }| Some((first?, cells, lines)),
+            )
+            .collect();
+        single.sort_by_key(|((place, _), ..)| place.line);
+        for ((place, cell), cells, lines) in single {
+            let reason = match cells {
+                1 => cell,
+                cells => LogReason::WrongCells {
+                    cell: Box::new(cell),
+                    more: cells - 1,
+                    lines,
+                },
+            };
+            findings.refuse("cell", place, &reason);
         }
-        findings.count("cell", cells - first.len());
         any
     }
 }
@@ -87,6 +108,7 @@ fn key(reason: &LogReason) -> Option<(String, Fault)> {
         LogReason::WrongField {
             column, expected, ..
         } => (column, Fault::Not(expected)),
+        LogReason::FieldCount { .. } => return Some((String::new(), Fault::Fields)),
         _ => return None,
     };
     Some((column.clone(), fault))

@@ -1,12 +1,18 @@
 //! Which column of a log is what, guessed from names and values.
 
 use super::Guess;
+use super::coding::{self, sign_bit};
+use super::dataset::{self, give_lerobot_roles, is_lerobot};
+use super::inputs::give_inputs;
 use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
-use super::name::{NameGuess, Role, name_guess, says_current};
-use super::values::{angle_unit, counts, median, range, speed_fit, stands_still, time_unit};
+use super::name::{NameGuess, Role, is_joint_state, name_guess};
+use super::segment::stepping_segment;
+use super::unused::{say_file, say_unused};
+use super::values::{angle_unit, counts, duty_unit, median, range, speed_fit};
 use crate::error::{Error, Place, Result};
 use crate::log::{LogReason, RawLog};
 use crate::model::Unit;
+use crate::output::shortened;
 
 /// Roles of a joint's columns.
 const OF_JOINTS: [Role; 7] = [
@@ -20,7 +26,7 @@ const OF_JOINTS: [Role; 7] = [
 ];
 
 /// Inputs in the order in which they are believed, and their drives.
-const INPUTS: [(Role, &str); 5] = [
+pub(super) const INPUTS: [(Role, &str); 5] = [
     (Role::Torque, "torque"),
     (Role::GoalPosition, "position"),
     (Role::GoalVelocity, "speed"),
@@ -42,8 +48,17 @@ pub fn log_guess(
     if !names.is_empty() && log.columns.iter().all(Vec::is_empty) {
         return Err(Error::refused(Place::file(file), LogReason::NoSample));
     }
+    let is_lerobot = is_lerobot(log.names.iter().map(String::as_str));
+    if is_lerobot {
+        give_lerobot_roles(log.names.iter().map(String::as_str), &mut names);
+    }
     give_inputs(&mut names);
-    let reader = GuessReader { log, names, drive };
+    let reader = GuessReader {
+        log,
+        names,
+        drive,
+        is_lerobot,
+    };
     let time = reader.time(file, said)?;
     let time_s = time.si(log);
     let mut joints = Vec::new();
@@ -54,58 +69,24 @@ pub fn log_guess(
         joints.retain(|joint| joint.position.is_some());
     }
     if joints.is_empty() {
-        return Err(Error::data(
-            Place::file(file),
-            format!("no column is named as an angle or a speed: {}", listed(log)),
-            "name the angle's column angle_rad, q1_rad or position, or write the model by hand: \
-             docs/model.md",
-        ));
+        return Err(reader.no_joint(file));
     }
     let name_of = |role: Role| reader.first(role).map(|index| log.names[index].clone());
+    let segment = name_of(Role::Segment);
     let guess = LogGuess {
-        segment: name_of(Role::Segment),
+        segment: segment.or_else(|| stepping_segment(log, time.index, said)),
         torque_on: name_of(Role::TorqueOn).filter(|name| is_flag(log, name)),
         supply: reader
             .first(Role::Supply)
             .map(|index| reader.supply(index, said)),
         time,
         joints,
+        payload: None,
+        knows_links: false,
     };
-    reader.say_rest(&guess, said);
+    say_file(log, &guess, said);
+    say_unused(log, &reader.names, &guess, said);
     Ok(guess)
-}
-
-/// Where the names tell of one joint's angle or speed, inputs that name no joint are that joint's;
-/// so is the only input, whatever its name says: `shoulder_deg` with `motor_torque_nm` or `m1_tau`.
-fn give_inputs(names: &mut [NameGuess]) {
-    let is_input = |name: &NameGuess| INPUTS.iter().any(|(role, _)| name.role == Some(*role));
-    let with = |role: Role| -> Vec<&String> {
-        let mut joints: Vec<&String> = Vec::new();
-        for name in names.iter().filter(|name| name.role == Some(role)) {
-            if !joints.contains(&&name.joint) {
-                joints.push(&name.joint);
-            }
-        }
-        joints
-    };
-    let measured = match with(Role::Position) {
-        angles if angles.is_empty() => with(Role::Velocity),
-        angles => angles,
-    };
-    let [joint] = measured[..] else {
-        return;
-    };
-    let joint = joint.clone();
-    let only = names.iter().filter(|name| is_input(name)).count() == 1;
-    for name in names.iter_mut().filter(|name| is_input(name)) {
-        if only || name.joint.is_empty() {
-            name.joint.clone_from(&joint);
-        }
-    }
-}
-
-fn listed(log: &RawLog) -> String {
-    log.names.join(", ")
 }
 
 fn is_flag(log: &RawLog, name: &str) -> bool {
@@ -113,10 +94,11 @@ fn is_flag(log: &RawLog, name: &str) -> bool {
     index.is_some_and(|index| log.columns[index].iter().all(|v| *v == 0.0 || *v == 1.0))
 }
 
-struct GuessReader<'a> {
-    log: &'a RawLog,
-    names: Vec<NameGuess>,
+pub(super) struct GuessReader<'a> {
+    pub log: &'a RawLog,
+    pub names: Vec<NameGuess>,
     drive: Option<&'a str>,
+    is_lerobot: bool,
 }
 
 impl GuessReader<'_> {
@@ -125,22 +107,23 @@ impl GuessReader<'_> {
     }
 
     fn column(&self, index: usize, unit: (&'static str, Option<f64>)) -> ColumnGuess {
-        let mut ticks = unit.1;
-        if unit.0 == "ticks" && ticks.is_none() {
+        let mut scale = unit.1;
+        if unit.0 == "ticks" && scale.is_none() {
             let highest = range(&self.log.columns[index]).map_or(0.0, |(_, high)| high);
-            ticks = Some(counts(highest));
+            scale = Some(counts(highest));
         }
         ColumnGuess {
             index,
             name: self.log.names[index].clone(),
             unit: unit.0,
-            ticks_per_turn: ticks,
+            scale,
             reversed: false,
+            offset_rad: 0.0,
         }
     }
 
     /// The column in its name's unit if that measures the right thing, else in the one guessed.
-    fn with_unit(
+    pub(super) fn with_unit(
         &self,
         index: usize,
         what: &str,
@@ -151,34 +134,23 @@ impl GuessReader<'_> {
         let dimension = |name: &str| Unit::named(name, Some(1.0)).map(|unit| unit.dimension);
         let named = self.names[index].unit;
         let named = named.filter(|(name, _)| dimension(name) == dimension(guessed.0));
-        let column = self.column(index, named.unwrap_or(guessed));
-        let why = if named.is_some() { "its name" } else { why };
+        let si = Unit::named(guessed.0, guessed.1).map(|unit| unit.dimension.si_unit());
+        let defined = si.filter(|si| self.log.is_si && !si.is_empty() && *si != "s");
+        let (unit, why) = match (named, defined) {
+            (Some(named), _) if is_joint_state(&self.log.names[index]) => {
+                (named, dataset::ROS_UNIT)
+            }
+            (Some(named), _) => (named, "its name"),
+            (None, Some(si)) => ((si, None), dataset::FORMAT_UNIT),
+            (None, None) => (guessed, why),
+        };
+        let column = self.column(index, unit);
         said.push(Guess::new(
             what,
             format!("column {:?} in {}", column.name, column.unit_words()),
             why,
         ));
         column
-    }
-
-    fn time(&self, file: &str, said: &mut Vec<Guess>) -> Result<ColumnGuess> {
-        let index = self.first(Role::Time).or_else(|| self.log.time()).ok_or_else(|| {
-            Error::data(
-                Place::file(file),
-                format!("no column is named time, and none only grows: {}", listed(self.log)),
-                "add a column time_s; rows a fixed period apart are their number times the period",
-            )
-        })?;
-        let unit = match self.log.iso.get(index) {
-            Some(true) => "iso8601",
-            _ => time_unit(&self.log.columns[index]),
-        };
-        let why = "the middle step between rows";
-        let mut column = self.with_unit(index, "time", (unit, None), why, said);
-        if unit == "iso8601" {
-            column.unit = unit;
-        }
-        Ok(column)
     }
 
     /// Names of the joints, numbers in their order, others as they come.
@@ -224,7 +196,12 @@ impl GuessReader<'_> {
             "" => what.to_string(),
             name => format!("{what} of joint {name}"),
         };
-        let why = "the range of its values";
+        let why = match self.is_lerobot {
+            // Said once.
+            true if said.iter().any(|guess| guess.why == dataset::LEROBOT_UNIT) => "likewise",
+            true => dataset::LEROBOT_UNIT,
+            false => "the range of its values",
+        };
         let position = self.of_joint(name, Role::Position).map(|index| {
             let guessed = angle_unit(&self.log.columns[index]);
             self.with_unit(index, &of("angle"), guessed, why, said)
@@ -232,6 +209,7 @@ impl GuessReader<'_> {
         let angle = position.as_ref().map(|column| column.si(self.log));
         let velocity = self
             .of_joint(name, Role::Velocity)
+            .filter(|index| self.is_plain(*index, &of("speed"), time_s, angle.as_deref(), said))
             .map(|index| self.velocity(index, &of("speed"), time_s, angle.as_deref(), said));
         if position.is_none() && velocity.is_none() {
             return None;
@@ -244,6 +222,24 @@ impl GuessReader<'_> {
             drive,
             input,
         })
+    }
+
+    /// Whether a column holds plain numbers; says how else they are coded.
+    fn is_plain(
+        &self,
+        index: usize,
+        what: &str,
+        time_s: &[f64],
+        angle_rad: Option<&[f64]>,
+        said: &mut Vec<Guess>,
+    ) -> bool {
+        let bit = sign_bit(&self.log.columns[index], time_s, angle_rad);
+        if let Some(bit) = bit {
+            let name = shortened(&self.log.names[index]);
+            let guess = format!("column {name:?} not taken: {}", coding::words(bit));
+            said.push(Guess::new(what, guess, coding::remedy(bit)));
+        }
+        bit.is_none()
     }
 
     fn velocity(
@@ -284,24 +280,26 @@ impl GuessReader<'_> {
             .filter(|(_, drive)| wanted(drive))
             .find_map(|(role, drive)| {
                 let index = self.of_joint(joint, *role)?;
-                let idle = *drive != "position" && stands_still(&self.log.columns[index]);
-                (!idle).then_some((index, *drive))
+                let values = &self.log.columns[index];
+                // What is constant but not 0 drives all the same, as a topic that is sent once.
+                let idle = *drive != "position" && range(values) == Some((0.0, 0.0));
+                (!idle && self.is_plain(index, what, &[], None, said)).then_some((index, *drive))
             });
         let Some((index, drive)) = found else {
             return ("passive", None);
         };
         let values = &self.log.columns[index];
-        let like = position.map(|column| (column.unit, column.ticks_per_turn));
+        let like = position.map(|column| (column.unit, column.scale));
         let (unit, why) = match drive {
             "position" => (
                 like.unwrap_or_else(|| angle_unit(values)),
                 "the angle's unit",
             ),
             "speed" => (("rad/s", None), "a guess: nothing tells"),
-            "duty" if range(values).is_some_and(|(low, high)| high.max(-low) > 1.5) => {
-                (("%", None), "the range of its values")
-            }
-            "duty" => (("1", None), "the range of its values"),
+            "duty" => match duty_unit(values) {
+                unit @ ("counts", _) => (unit, "a guess: more than 100, so no per cent"),
+                unit => (unit, "the range of its values"),
+            },
             _ => (("N m", None), "a guess: nothing tells"),
         };
         (drive, Some(self.with_unit(index, what, unit, why, said)))
@@ -319,37 +317,5 @@ impl GuessReader<'_> {
             "the range of its values",
             said,
         )
-    }
-
-    /// Says which columns are not used.
-    fn say_rest(&self, guess: &LogGuess, said: &mut Vec<Guess>) {
-        let used = guess.names();
-        let rest = self
-            .log
-            .names
-            .iter()
-            .map(String::as_str)
-            .filter(|name| !used.contains(name));
-        let rest: Vec<String> = rest.map(|name| format!("{name:?}")).collect();
-        if !rest.is_empty() {
-            said.push(Guess::new(
-                "not used",
-                rest.join(", "),
-                "another value is more direct, or none needs it",
-            ));
-        }
-        let current = |name: &&String| says_current(name);
-        if let Some(name) = self.log.names.iter().find(current)
-            && guess.joints.iter().all(|joint| joint.input.is_none())
-        {
-            let guess = format!("no column; {name:?} is a current");
-            let remedy = "drive = \"torque\" takes it as input = { column, unit = \"A\", \
-                          torque_constant_nm_a }";
-            said.push(Guess::new("input", guess, remedy));
-        }
-        if self.first(Role::Payload).is_some() {
-            let remedy = "payload = { column, unit, at_m } says where it is bolted";
-            said.push(Guess::new("payload", "not used", remedy));
-        }
     }
 }

@@ -2,9 +2,10 @@
 
 use super::Guess;
 use super::log_guess::{JointGuess, LogGuess};
-use super::values::{gravity_of_torques, median, rod_length_m, zero_at_rest};
+use super::values::{gravity_of_torques, median, rests, rod_length_m, zero_at_rest};
 use crate::log::RawLog;
 use crate::model::new_model::LinkPlan;
+use crate::output::shortened;
 
 /// Acceleration of gravity where nothing else is said, m/s^2.
 const GRAVITY_M_S2: f64 = 9.81;
@@ -58,9 +59,46 @@ impl Evidence {
             let why = "a guess: driven angles do not tell; `handstand log check` tries the others";
             return ("hanging", why.to_string());
         }
+        if !rests(angle) {
+            let why = "a guess: the first joint turns round, so where it rests does not show";
+            return ("hanging", why.to_string());
+        }
         let rest = median(angle);
-        let why = format!("the first joint moves freely around {rest:.2} rad");
-        (zero_at_rest(rest), why)
+        match zero_at_rest(rest) {
+            Some(zero) => (
+                zero,
+                format!("the first joint moves freely around {rest:.2} rad"),
+            ),
+            None => (
+                "hanging",
+                format!("a free joint rests hanging; the first one does at {rest:.2} rad"),
+            ),
+        }
+    }
+
+    /// Gives free joints that hang at another angle than 0 the offset of their zero.
+    pub fn offsets(&self, zero: &str, columns: &mut LogGuess, guesses: &mut Vec<Guess>) {
+        if zero != "hanging" || self.driven || self.gravity.is_some() {
+            return;
+        }
+        for (joint, angle) in columns.joints.iter_mut().zip(&self.angle_rad) {
+            let rest = median(angle);
+            let own = rests(angle) && zero_at_rest(rest) != Some("hanging");
+            let Some(column) = joint.position.as_mut().filter(|_| own) else {
+                continue;
+            };
+            // To a mrad: a median says no more.
+            column.offset_rad = -(1e3 * rest).round() / 1e3;
+            guesses.push(Guess::new(
+                "angle offset",
+                format!(
+                    "{} rad, added to {:?}",
+                    column.offset_rad,
+                    shortened(&column.name)
+                ),
+                "the joint moves freely around there, so that is where it hangs",
+            ));
+        }
     }
 
     /// Whether angles are relative, and why.
@@ -138,7 +176,7 @@ impl Evidence {
     }
 }
 
-fn link(joint: &JointGuess, length_m: f64, mass_kg: f64) -> LinkPlan {
+pub(super) fn link(joint: &JointGuess, length_m: f64, mass_kg: f64) -> LinkPlan {
     let motor = ["duty", "position", "speed"].contains(&joint.drive);
     LinkPlan {
         slide: None,

@@ -12,26 +12,31 @@ pub struct ColumnGuess {
     pub name: String,
     /// Unit, by its name in model files.
     pub unit: &'static str,
-    /// Counts per turn, where the unit is `ticks`.
-    pub ticks_per_turn: Option<f64>,
+    /// Counts per turn, where the unit is `ticks`, or of the full scale, where it is `counts`.
+    pub scale: Option<f64>,
     /// Whether it counts the other way round.
     pub reversed: bool,
+    /// Added to an angle, rad.
+    pub offset_rad: f64,
 }
 
 impl ColumnGuess {
     /// Its values in SI.
     pub fn si(&self, log: &RawLog) -> Vec<f64> {
         let sign = if self.reversed { -1.0 } else { 1.0 };
-        let factor = Unit::named(self.unit, self.ticks_per_turn).map_or(1.0, |unit| unit.si);
+        let factor = Unit::named(self.unit, self.scale).map_or(1.0, |unit| unit.si);
         let values = log.columns[self.index].iter();
-        values.map(|value| sign * factor * value).collect()
+        values
+            .map(|value| sign * factor * value + self.offset_rad)
+            .collect()
     }
 
     /// Its unit in a sentence.
     pub fn unit_words(&self) -> String {
-        match self.ticks_per_turn {
-            Some(ticks) => format!("{}, {ticks} per turn", self.unit),
-            None => self.unit.to_string(),
+        match (self.unit, self.scale) {
+            ("counts", Some(full)) => format!("counts of {full}"),
+            (unit, Some(ticks)) => format!("{unit}, {ticks} per turn"),
+            (unit, None) => unit.to_string(),
         }
     }
 
@@ -39,8 +44,13 @@ impl ColumnGuess {
     pub fn toml(&self) -> String {
         let name = toml_edit::Value::from(self.name.as_str());
         let mut text = format!("{{ column = {name}, unit = \"{}\"", self.unit);
-        if let Some(ticks) = self.ticks_per_turn {
-            text += &format!(", ticks_per_turn = {ticks}");
+        let dimension = Unit::named(self.unit, self.scale).map(|unit| unit.dimension);
+        let key = dimension.and_then(|dimension| Unit::scale_key(self.unit, dimension));
+        if let (Some(key), Some(scale)) = (key, self.scale) {
+            text += &format!(", {key} = {scale}");
+        }
+        if self.offset_rad != 0.0 {
+            text += &format!(", offset_rad = {:?}", self.offset_rad);
         }
         if self.reversed {
             text += ", reversed = true";
@@ -77,6 +87,19 @@ pub struct LogGuess {
     pub torque_on: Option<String>,
     /// From the base outwards.
     pub joints: Vec<JointGuess>,
+    /// What each log says that it carries.
+    pub payload: Option<PayloadGuess>,
+    /// Whether the log says what the links are.
+    pub knows_links: bool,
+}
+
+/// A weight that each log names, kg, and where it is bolted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PayloadGuess {
+    /// Its key in the log.
+    pub key: &'static str,
+    /// From the last joint, m.
+    pub at_m: f64,
 }
 
 impl LogGuess {

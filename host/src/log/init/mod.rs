@@ -1,19 +1,26 @@
 //! Which model does a log start with? Columns and units guessed from names and ranges, links from
 //! how it swings; each guess with its reason.
 
+mod bench;
+mod coding;
 mod columns;
+mod dataset;
 mod estimated;
 mod evidence;
+mod inputs;
 mod log_guess;
 mod name;
+mod segment;
 #[cfg(test)]
 mod tests;
+mod times;
+mod unused;
 mod values;
 mod words;
 mod write;
 
 pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
-pub(crate) use name::name_guess;
+pub(crate) use name::{Role, name_guess};
 
 use crate::error::{Error, Result};
 use crate::log::RawLog;
@@ -81,16 +88,20 @@ impl Draft {
     /// A log without a time, or without an angle or a speed.
     pub fn of(log: &RawLog, file: &str, drive: Option<&str>) -> Result<Draft> {
         let mut guesses = Vec::new();
-        let columns = log_guess(log, file, drive, &mut guesses)?;
+        let mut columns = log_guess(log, file, drive, &mut guesses)?;
         let time_s = columns.time.si(log);
         let evidence = Evidence::of(log, &columns, &time_s);
         let (angle_zero, why) = evidence.zero();
         guesses.push(Guess::new("angle zero", angle_zero, why));
+        evidence.offsets(angle_zero, &mut columns, &mut guesses);
         let (angles, why) = evidence.angles(angle_zero);
         if columns.joints.len() > 1 {
             guesses.push(Guess::new("angles", angles, why));
         }
-        let links = evidence.links(&columns, &mut guesses);
+        let links = match log.bench.filter(|_| columns.joints.len() == 1) {
+            Some(bench) => bench::links(bench, &mut columns, &mut guesses),
+            None => evidence.links(&columns, &mut guesses),
+        };
         let name = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
         let plan = ModelPlan {
             name: name.to_string(),

@@ -74,10 +74,14 @@ impl NameGuess {
 /// Takes a column's name apart.
 pub fn name_guess(name: &str) -> NameGuess {
     let (bare, bracketed) = bracketed(name);
-    let words = words(bare);
+    let (words, bracketed) = match bracketed.filter(|text| is_number_of_joint(bare, text)) {
+        Some(_) => (words(name), None),
+        None => (words(bare), bracketed),
+    };
     let (unit, unit_words) = unit(&words, bracketed);
     let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
     let role = role(&words, unit.map(|(unit, _)| unit));
+    let unit = unit.or_else(|| Some((joint_state_unit(name, role?)?, None)));
     let sets = [
         TIME, SEGMENT, SUPPLY, ON, GOAL, TORQUE, EFFORT, DUTY, VELOCITY, POSITION, MEASURED,
         DERIVED, PLAIN,
@@ -96,6 +100,36 @@ pub fn name_guess(name: &str) -> NameGuess {
         joint,
         rank,
     }
+}
+
+/// Whether a number in brackets says which joint is meant: `pos (2)`, `q[1]`. A duty in `[1]` is a
+/// share.
+fn is_number_of_joint(bare: &str, text: &str) -> bool {
+    let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_duty = || words(bare).iter().any(|word| DUTY.contains(&word.as_str()));
+    is_number && !(text == "1" && is_duty())
+}
+
+/// Whether a name is that of a topic of ROS joint states, as PlotJuggler writes it.
+pub fn is_joint_state(name: &str) -> bool {
+    name.to_lowercase().contains("joint_states/")
+}
+
+/// The unit that joint states have by definition.
+fn joint_state_unit(name: &str, role: Role) -> Option<&'static str> {
+    let unit = match role {
+        Role::Position => "rad",
+        Role::Velocity => "rad/s",
+        Role::Effort | Role::Torque => "N m",
+        _ => return None,
+    };
+    is_joint_state(name).then_some(unit)
+}
+
+/// Whether some word of a name is one for an angle.
+pub fn names_an_angle(name: &str) -> bool {
+    let words = words(bracketed(name).0);
+    words.iter().any(|word| POSITION.contains(&word.as_str()))
 }
 
 /// Whether a name says that the column holds a current.

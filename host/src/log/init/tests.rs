@@ -1,5 +1,7 @@
 //! Drafts from headers and ranges.
 
+mod field;
+
 use super::*;
 use crate::Model;
 use std::path::Path;
@@ -19,6 +21,8 @@ fn log(columns: &[(&str, TestCurve)]) -> RawLog {
             .map(|(_, value)| (0..SAMPLES).map(|k| value(time(k))).collect())
             .collect(),
         iso: vec![false; columns.len()],
+        words: vec![None; columns.len()],
+        ..RawLog::default()
     }
 }
 
@@ -210,6 +214,8 @@ fn what_is_no_log_of_joints_is_refused() {
             names: vec!["t".into(), "q".into()],
             columns: vec![vec![]; 2],
             iso: vec![false; 2],
+            words: vec![None; 2],
+            ..RawLog::default()
         },
         (),
     );

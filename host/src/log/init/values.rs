@@ -62,6 +62,23 @@ pub fn counts(highest: f64) -> f64 {
     reach.unwrap_or(COUNTS[COUNTS.len() - 1])
 }
 
+/// Full scales of duties that are counts: timers and registers of servos.
+const FULL_SCALES: [f64; 7] = [255.0, 885.0, 1000.0, 1023.0, 4095.0, 32767.0, 65535.0];
+
+/// The unit of a duty whose name says none, with the counts of its full scale: no per cent exceeds
+/// a hundred.
+pub fn duty_unit(values: &[f64]) -> (&'static str, Option<f64>) {
+    let (low, high) = range(values).unwrap_or((0.0, 0.0));
+    match high.max(-low) {
+        most if most <= 1.5 => ("1", None),
+        most if most <= 100.5 => ("%", None),
+        most => {
+            let full = FULL_SCALES.into_iter().find(|full| most <= *full);
+            ("counts", Some(full.unwrap_or(most.ceil())))
+        }
+    }
+}
+
 /// A speed's unit and sign, from the slope of its angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedFit {
@@ -77,21 +94,7 @@ pub struct SpeedFit {
 ///
 /// `time_s` and `angle_rad` are in SI, `speed` as written.
 pub fn speed_fit(time_s: &[f64], angle_rad: &[f64], speed: &[f64]) -> Option<SpeedFit> {
-    let (mut cross, mut square, mut own) = (0.0, 0.0, 0.0);
-    for k in 1..time_s.len().saturating_sub(1) {
-        let span = time_s[k + 1] - time_s[k - 1];
-        let slope = (angle_rad[k + 1] - angle_rad[k - 1]) / span;
-        if span > 0.0 && slope.is_finite() && speed[k].is_finite() {
-            cross += slope * speed[k];
-            square += slope * slope;
-            own += speed[k] * speed[k];
-        }
-    }
-    // Where noise outweighs motion, nothing can be said.
-    let alike = cross / (square * own).sqrt();
-    if alike.is_nan() || alike.abs() <= 0.7 {
-        return None;
-    }
+    let Slopes { cross, square, own } = Slopes::of(time_s, angle_rad, speed).alike()?;
     // Noise of the slopes lowers their share in the speed and the reverse; between the two lies
     // the ratio.
     let ratio = (own / square).sqrt();
@@ -107,24 +110,85 @@ pub fn speed_fit(time_s: &[f64], angle_rad: &[f64], speed: &[f64]) -> Option<Spe
     })
 }
 
+/// Correlation of values with the slope of the angles, -1 to 1; 0 where either does not change.
+pub fn slope_correlation(time_s: &[f64], angle_rad: &[f64], values: &[f64]) -> f64 {
+    let slope = |k: usize| (angle_rad[k + 1] - angle_rad[k - 1]) / (time_s[k + 1] - time_s[k - 1]);
+    let pairs = (1..time_s.len().saturating_sub(1)).map(|k| (slope(k), values[k]));
+    let pairs: Vec<(f64, f64)> = pairs
+        .filter(|(slope, value)| slope.is_finite() && value.is_finite())
+        .collect();
+    let count = pairs.len().max(1) as f64;
+    let means = pairs
+        .iter()
+        .fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
+    let (mut cross, mut square, mut own) = (0.0, 0.0, 0.0);
+    for (slope, value) in pairs {
+        let (slope, value) = (slope - means.0 / count, value - means.1 / count);
+        cross += slope * value;
+        square += slope * slope;
+        own += value * value;
+    }
+    match square * own > 0.0 {
+        true => cross / (square * own).sqrt(),
+        false => 0.0,
+    }
+}
+
+/// Sums of products of the slopes of angles and of speeds.
+struct Slopes {
+    cross: f64,
+    square: f64,
+    own: f64,
+}
+
+impl Slopes {
+    fn of(time_s: &[f64], angle_rad: &[f64], speed: &[f64]) -> Slopes {
+        let (mut cross, mut square, mut own) = (0.0, 0.0, 0.0);
+        for k in 1..time_s.len().saturating_sub(1) {
+            let span = time_s[k + 1] - time_s[k - 1];
+            let slope = (angle_rad[k + 1] - angle_rad[k - 1]) / span;
+            if span > 0.0 && slope.is_finite() && speed[k].is_finite() {
+                cross += slope * speed[k];
+                square += slope * slope;
+                own += speed[k] * speed[k];
+            }
+        }
+        Slopes { cross, square, own }
+    }
+
+    /// Themselves, if the two go together: where noise outweighs motion, nothing can be said.
+    fn alike(self) -> Option<Slopes> {
+        let alike = self.cross / (self.square * self.own).sqrt();
+        (alike.abs() > 0.7).then_some(self)
+    }
+}
+
+/// So near a pose a joint that hangs there rests, rad: what lies further off has a zero of its own.
+const AT_POSE_RAD: f64 = 0.2;
+
 /// `hanging`, `horizontal` or `upright`, whichever explains that a free joint rests around this
-/// angle, and whether angles count clockwise for that.
-pub fn zero_at_rest(rest_rad: f64) -> &'static str {
+/// angle; none where none does.
+pub fn zero_at_rest(rest_rad: f64) -> Option<&'static str> {
     let turned = rest_rad.rem_euclid(TAU);
     let off = |angle: f64| {
         let apart = (turned - angle).rem_euclid(TAU);
         apart.min(TAU - apart)
     };
-    let zeros = [
+    let mut zeros = [
         ("hanging", 0.0),
         ("upright", PI),
         ("horizontal", -FRAC_PI_2),
         ("horizontal", FRAC_PI_2),
-    ];
-    let nearest = zeros
-        .into_iter()
-        .min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-    nearest.map_or("hanging", |(name, _)| name)
+    ]
+    .into_iter();
+    let at = zeros.find(|(_, angle)| off(*angle) < AT_POSE_RAD)?;
+    Some(at.0)
+}
+
+/// Whether a free joint of these angles comes to rest at their middle, rad: it does not where it
+/// turns round.
+pub fn rests(angle_rad: &[f64]) -> bool {
+    range(angle_rad).is_some_and(|(low, high)| high - low < TAU)
 }
 
 /// Torques of gravity on the first joint: where they say that angles are zero, and their amplitude,
@@ -241,7 +305,7 @@ mod tests {
 
     #[test]
     fn rest_and_torques_tell_the_zero() {
-        let tell = [-0.1, 3.2, -3.0, 1.5, -1.6, 6.2].map(zero_at_rest);
+        let tell = [-0.1, 3.2, -3.0, 1.5, -1.6, 6.2].map(|rest| zero_at_rest(rest).unwrap());
         let told = [
             "hanging",
             "upright",
@@ -251,6 +315,7 @@ mod tests {
             "hanging",
         ];
         assert_eq!(tell, told);
+        assert_eq!([0.88, -0.6, 2.3, 100.0].map(zero_at_rest), [None; 4]);
         let time_s: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).collect();
         let angle: Vec<f64> = time_s.iter().map(|t| 2.0 * (4.0 * t).sin()).collect();
         // A motor that swings an arm of 0.3 kg m^2 against gravity: the acceleration outweighs it.
@@ -273,6 +338,10 @@ mod tests {
         assert_eq!(time_unit(&[0.0, 10.0, 20.0]), "ms");
         assert_eq!(time_unit(&[0.0, 1e4, 2e4]), "us");
         assert_eq!(time_unit(&[0.0, 0.01, 0.02]), "s");
+        assert_eq!(duty_unit(&[0.5, -1.0]), ("1", None));
+        assert_eq!(duty_unit(&[-100.0, 45.0]), ("%", None));
+        assert_eq!(duty_unit(&[-221.0, 45.0]), ("counts", Some(255.0)));
+        assert_eq!(duty_unit(&[1e6]), ("counts", Some(1e6)));
         assert_eq!(angle_unit(&[0.1, -3.0]), ("rad", None));
         assert_eq!(angle_unit(&[-90.5, 45.0]), ("deg", None));
         assert_eq!(angle_unit(&[2048.0, 1000.0]), ("ticks", Some(4096.0)));

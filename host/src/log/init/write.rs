@@ -1,6 +1,6 @@
 //! A guessed model as a file that says what was guessed.
 
-use super::log_guess::JointGuess;
+use super::log_guess::{JointGuess, PayloadGuess};
 use super::{ColumnGuess, Draft};
 use crate::error::Result;
 use crate::model::RateSensor;
@@ -75,6 +75,12 @@ pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
     if let Some(torque_on) = &columns.torque_on {
         let _ = writeln!(text, "torque_on = {}", quoted(torque_on));
     }
+    if let Some(PayloadGuess { key, at_m }) = columns.payload {
+        let _ = writeln!(
+            text,
+            "payload = {{ column = \"{key}\", unit = \"kg\", at_m = {at_m:?} }} # of each log"
+        );
+    }
     for (index, (joint, drive)) in columns.joints.iter().zip(drives).enumerate() {
         let _ = writeln!(
             text,
@@ -112,8 +118,10 @@ fn free(draft: &Draft) -> Vec<String> {
     let mut free = Vec::new();
     for (index, link) in links.iter().enumerate() {
         let number = index + 1;
-        free.push(format!("link{number}.com_m"));
-        if link.drive == "torque" || index > 0 {
+        if !draft.columns.knows_links {
+            free.push(format!("link{number}.com_m"));
+        }
+        if !draft.columns.knows_links && (link.drive == "torque" || index > 0) {
             free.push(format!("link{number}.inertia_kg_m2"));
         }
         if index > 0 {

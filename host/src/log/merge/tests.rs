@@ -12,6 +12,8 @@ fn log(from_s: f64, step_s: f64, rows: usize, clock_s: f64, name: &str, scale: f
             vec![1.0; rows],
         ],
         iso: vec![false; 3],
+        words: vec![None; 3],
+        ..RawLog::default()
     }
 }
 

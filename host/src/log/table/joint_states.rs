@@ -74,6 +74,11 @@ impl JointStates {
         self.series.entry(name).or_default().push((stamp_ns, value));
     }
 
+    /// Whether no message came.
+    pub fn is_empty(&self) -> bool {
+        self.topics.is_empty()
+    }
+
     fn bounded(&self, file: TableFile) -> Result<()> {
         if self.cells > (16 * self.values + 1_000_000).min(MOST_CELLS) {
             return Err(file.wrong(
@@ -107,6 +112,7 @@ impl JointStates {
         let mut table = LogTable {
             names: vec!["time_s".to_string()],
             columns: vec![time_s.collect()],
+            is_si: true,
             ..LogTable::default()
         };
         let mut budget = self.values * 16 + 1_000_000;

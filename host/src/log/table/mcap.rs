@@ -30,7 +30,8 @@ pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<LogTable> {
         return Err(file.wrong("not an MCAP file", remedy));
     }
     let mut taken = Messages::default();
-    match messages(bytes, |message| taken.take(message, file))? {
+    let end = messages(bytes, |message| taken.take(message, file))?;
+    match end {
         // What lies before the chunk that was being written when the recorder died is whole.
         McapEnd::Complete | McapEnd::Torn => {}
         McapEnd::Broken(why) => {
@@ -51,7 +52,16 @@ pub(super) fn read(bytes: &[u8], file: TableFile) -> Result<LogTable> {
             .states
             .sample("gyro_rad_s".into(), stamp_ns, rate_rad_s);
     }
+    let is_torn = end == McapEnd::Torn;
+    if is_torn && taken.states.is_empty() {
+        let what = "the file is broken off before its first chunk of joint states is whole";
+        return Err(file.wrong(what, "record it again"));
+    }
     let mut table = taken.states.table(file)?;
+    table.warning = is_torn.then_some((
+        "the file is broken off; what was recorded last is not in it",
+        "what is whole is used; `mcap recover` makes a whole file of it",
+    ));
     if is_own {
         table
             .names

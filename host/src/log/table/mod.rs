@@ -13,11 +13,13 @@ mod sqlite;
 #[cfg(test)]
 mod tests;
 
+use super::foreign::{HEAD, foreign};
 use super::format::LogFormat;
 use crate::error::{Error, Place, Result};
 use crate::output::number::hex;
 use bytes::Bytes;
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Largest file that is read whole, bytes.
@@ -38,17 +40,22 @@ pub(super) struct LogTable {
     /// Numbers for the whole file.
     pub constants: Vec<(String, f64)>,
     /// Columns that hold no numbers a row, and what they hold.
-    pub left_out: Vec<(String, &'static str)>,
+    pub left_out: Vec<(String, Cow<'static, str>)>,
+    /// What looks wrong with the file, and what to do about it.
+    pub warning: Option<(&'static str, &'static str)>,
+    /// Whether the format says that angles are rad, speeds rad/s and torques N m.
+    pub is_si: bool,
     /// SHA-256 of the file, lower-case hexadecimal.
     pub sha256: String,
 }
 
 impl LogTable {
-    /// Reads a file in one of these formats.
+    /// Reads a file in one of these formats; `time` names its column of time, where it is known:
+    /// a file of variables of several lengths gives those as long as that.
     ///
     /// # Errors
     /// What the system refuses, and what is no such file.
-    pub fn read(path: &Path, format: LogFormat) -> Result<LogTable> {
+    pub fn read(path: &Path, format: LogFormat, time: Option<&str>) -> Result<LogTable> {
         let refused = |source| Error::file(path, "read", source);
         let length = std::fs::metadata(path).map_err(refused)?.len();
         let file = TableFile { path };
@@ -56,8 +63,11 @@ impl LogTable {
             return Err(file.wrong("more than 4 GiB", "cut the log into shorter ones"));
         }
         let bytes = Bytes::from(std::fs::read(path).map_err(refused)?);
+        if let Some(error) = foreign(path, &bytes[..bytes.len().min(HEAD)], format) {
+            return Err(error);
+        }
         let digest = || hex(Sha256::digest(&bytes));
-        let (table, sha256) = rayon::join(|| Self::of(bytes.clone(), file, format), digest);
+        let (table, sha256) = rayon::join(|| Self::of(bytes.clone(), file, format, time), digest);
         Ok(LogTable { sha256, ..table? })
     }
 
@@ -65,10 +75,15 @@ impl LogTable {
     ///
     /// # Errors
     /// What is no such file.
-    pub fn of(bytes: Bytes, file: TableFile, format: LogFormat) -> Result<LogTable> {
+    pub fn of(
+        bytes: Bytes,
+        file: TableFile,
+        format: LogFormat,
+        time: Option<&str>,
+    ) -> Result<LogTable> {
         match format {
             LogFormat::Mcap => mcap::read(&bytes, file),
-            LogFormat::Mat => mat::read(bytes, file),
+            LogFormat::Mat => mat::read(bytes, file, time),
             LogFormat::Rosbag => rosbag::read(&bytes, file),
             LogFormat::Parquet => parquet::read(bytes, file),
             LogFormat::Csv | LogFormat::Bam => Err(file.wrong("not a table", "name a log")),

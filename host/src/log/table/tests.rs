@@ -30,7 +30,7 @@ pub(super) fn path(name: &str) -> PathBuf {
 }
 
 pub(super) fn table(name: &str) -> LogTable {
-    LogTable::read(&path(name), LogFormat::of(&path(name))).unwrap()
+    LogTable::read(&path(name), LogFormat::of(&path(name)), None).unwrap()
 }
 
 pub(super) fn of(name: &str, bytes: &[u8]) -> Result<LogTable> {
@@ -39,6 +39,7 @@ pub(super) fn of(name: &str, bytes: &[u8]) -> Result<LogTable> {
         Bytes::copy_from_slice(bytes),
         TableFile { path: &path },
         LogFormat::of(&path),
+        None,
     )
 }
 
@@ -202,6 +203,14 @@ fn a_torn_mcap_is_read_as_far_as_it_is_whole() {
     let whole = table("states_none.mcap");
     let torn = of("states_none.mcap", &bytes[..bytes.len() / 2]).unwrap();
     assert!(torn.rows() > 5 && torn.rows() < whole.rows());
+    // Not without a word.
+    assert!(torn.warning.unwrap().0.contains("broken off"));
+    assert_eq!(whole.warning, None);
+    let none = of("states_none.mcap", &bytes[..bytes.len() / 100]).unwrap_err();
+    assert!(
+        none.to_string().contains("before its first chunk"),
+        "{none}"
+    );
     let index = |table: &LogTable| {
         table
             .names

@@ -10,6 +10,7 @@ mod bam;
 mod dialects;
 pub mod fixture;
 mod gaps;
+mod layout;
 mod motions;
 mod real;
 mod refusals;

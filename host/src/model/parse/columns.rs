@@ -13,6 +13,8 @@ use crate::error::Result;
 
 /// Counts per turn; more than 2^32 is no encoder.
 const TICKS: Limits = Limits::within(1.0, 4_294_967_296.0);
+/// Counts that are the full voltage.
+const FULL_SCALE: Limits = Limits::within(1.0, 4_294_967_296.0);
 /// Counts of a linear encoder per metre; 10 to the 12th are counts of a picometre.
 const TICKS_PER_M: Limits = Limits::within(1.0, 1e12);
 /// Torque, or force, of a drive per ampere of its motor, gear included, N m/A or N/A.
@@ -191,6 +193,7 @@ fn unit(table: &Table, quantity: &'static str, wanted: Dimension) -> Result<Unit
     let name = table.required_text("unit")?;
     let scale = match Unit::scale_key(name, wanted) {
         Some(key @ "ticks_per_turn") => table.number(key, TICKS)?,
+        Some(key @ "full_scale") => table.number(key, FULL_SCALE)?,
         Some(key @ "ticks_per_m") => table.number(key, TICKS_PER_M)?,
         Some(key) => table.number(key, MOTOR_CONSTANT)?,
         None => None,

@@ -126,11 +126,9 @@ fn single_cells_keep_their_lines_beside_a_column() {
         _ => field.into(),
     });
     let all = refused(&few, &servo());
-    let lines: Vec<_> = all
-        .iter()
-        .map(|(kind, place, ..)| (*kind, place.0))
-        .collect();
-    assert_eq!(lines, [("cell", Some(4)), ("cell", Some(6))]);
+    assert_eq!((all.len(), all[0].0, all[0].1.0), (1, "cell", Some(4)));
+    let said = "q: 'x' is not a number; and 1 more like it, in line 6";
+    assert_eq!(all[0].2, said);
     assert!(all[0].3.contains("delete the line"), "{all:?}");
     // A line of units below the names, stamps below it.
     let units = changed(0, |index, _| match index {

@@ -38,6 +38,15 @@ fn names_of_many_benches_are_understood() {
         ("duty1", Duty, None, "1"),
         ("Joint 1 Angle (deg)", Position, Some("deg"), "1"),
         ("gyro_rad_s", Velocity, Some("rad/s"), ""),
+        // A number in brackets is a joint's, unless it is the unit of a share.
+        ("pos (2)", Position, None, "2"),
+        ("target pos (1)", GoalPosition, None, "1"),
+        ("q[0]", Position, None, "0"),
+        ("duty [1]", Duty, Some("1"), ""),
+        ("duty (2)", Duty, None, "2"),
+        // By definition.
+        ("/joint_states/a/position", Position, Some("rad"), "a"),
+        ("/joint_states/a/velocity", Velocity, Some("rad/s"), "a"),
     ];
     for (name, role, unit, joint) in cases {
         assert_eq!(guess(name), (Some(role), unit, joint.to_string()), "{name}");

@@ -2,7 +2,7 @@
 //!
 //! A vector is a column of its name; a matrix with as many rows gives `q_1`, `q_2`, .. for its
 //! columns. A scalar is a constant. Fields of a structure come as `data.q`. Variables of another
-//! length than most, text, cells, complex and sparse numbers are left out, and so are objects.
+//! length than the time's, text, cells, complex and sparse numbers are left out, and so are objects.
 
 mod element;
 mod number;
@@ -26,17 +26,16 @@ const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 const REMEDY: &str = "save it from MATLAB by save(\"log.mat\", .., \"-v7\"), from Python by \
                       scipy.io.savemat";
 
-pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<LogTable> {
+pub(super) fn read(bytes: Bytes, file: TableFile, time: Option<&str>) -> Result<LogTable> {
     let variables = match is_version73(&bytes) {
         true => version73::read(bytes, file)?,
         false => version5::read(&bytes, file)?,
     };
-    variables.table().ok_or_else(|| {
-        file.wrong(
-            "no variable is a column of numbers",
-            "save time and angles as vectors",
-        )
-    })
+    let (what, remedy) = variables.without_columns();
+    let table = variables
+        .table(time)
+        .filter(|table| !table.names.is_empty());
+    table.ok_or_else(|| file.wrong(what, remedy))
 }
 
 /// By the words at its begin, the version behind them, or the HDF5 file itself.

@@ -75,14 +75,65 @@ fn what_is_not_read_of_a_matlab_file_is_said() {
 }
 
 #[test]
+fn an_array_of_structures_is_told_with_how_to_save_one() {
+    for name in ["structures.mat", "structures73.mat"] {
+        let error = of("a.mat", &std::fs::read(path(name)).unwrap()).unwrap_err();
+        let said = error.to_string();
+        assert!(
+            said.ends_with("`test` is an array of 2 structures"),
+            "{name}: {said}"
+        );
+        let remedy = "save one of them: s = test(1); save('log.mat', '-struct', 's')";
+        assert_eq!(error.remedy().unwrap(), remedy);
+    }
+}
+
+/// Three gains, a time and an angle of 50 rows, and those of a slower recorder.
+fn workspace() -> MatVariables {
+    let mut found = MatVariables::default();
+    let ramp = |rows: usize| (0..rows).map(|k| k as f64).collect::<Vec<_>>();
+    for gain in ["A", "K", "Q"] {
+        found.push(gain.into(), 30, 30, ramp(900));
+    }
+    for (time, angle, rows) in [("slow_t", "slow_q", 20), ("t", "q", 50)] {
+        found.push(time.into(), rows, 1, ramp(rows));
+        found.push(angle.into(), rows, 1, ramp(rows));
+    }
+    found
+}
+
+#[test]
+fn matrices_do_not_hide_what_is_as_long_as_the_time() {
+    let names = |time: Option<&str>| workspace().table(time).unwrap().names;
+    assert_eq!(names(None), ["t", "q"]);
+    // The model's time column decides.
+    assert_eq!(names(Some("slow_t")), ["slow_t", "slow_q"]);
+    assert_eq!(names(Some("K_2")).len(), 90);
+    // What is not read is said with its rows.
+    let left_out = workspace().table(None).unwrap().left_out;
+    assert!(left_out.contains(&(
+        "K".into(),
+        "30 rows, another number of rows than the 50 of the log".into()
+    )));
+    // Without a time the most numbers count, not the most columns.
+    let mut few = MatVariables::default();
+    few.push("K".into(), 3, 3, vec![1.0; 9]);
+    few.push("x".into(), 50, 1, vec![1.0; 50]);
+    assert_eq!(few.table(None).unwrap().names, ["x"]);
+}
+
+#[test]
 fn a_wide_matrix_takes_no_more_memory_than_its_numbers() {
     let mut found = MatVariables::default();
     found.push("wide".into(), 3, 4096, vec![1.0; 3 * 4096]);
     found.push("wider".into(), 3, 4097, vec![1.0; 3 * 4097]);
-    let table = found.table().unwrap();
+    let table = found.table(None).unwrap();
     assert_eq!(table.columns.len(), 4096);
     assert!(table.columns.iter().all(|column| column.capacity() < 8));
-    assert_eq!(table.left_out, [("wider".into(), "more than 4096 columns")]);
+    assert_eq!(
+        table.left_out,
+        [("wider".into(), "more than 4096 columns".into())]
+    );
 }
 
 /// The file with `old`, which is in it, replaced by `new` everywhere.

@@ -98,7 +98,11 @@ impl MatReader {
             STRUCTURE if count == 1 && depth < DEEPEST => {
                 return self.structure(parts, &name, depth);
             }
-            STRUCTURE => "structures in an array, or too deep in others",
+            STRUCTURE if count > 1 => {
+                self.found.leave_out_structures(&name, count);
+                return Ok(());
+            }
+            STRUCTURE => "no structure, or one too deep in others",
             CELL => "cells",
             TEXT => "text",
             SPARSE => "a sparse matrix",

@@ -72,6 +72,15 @@ impl Hdf5Walk {
             within => format!("{within}.{name}"),
         };
         for dataset in &datasets {
+            // The fields of an array of structures refer to what each of them holds.
+            let refers = matches!(dataset.dtype(), Datatype::Reference { .. });
+            if refers && !within.is_empty() && matches!(class(dataset)?, Hdf5Class::LeftOut(FIELD))
+            {
+                let count = dataset.shape().iter().product::<u64>();
+                self.found
+                    .leave_out_structures(within, usize::try_from(count).unwrap_or(usize::MAX));
+                continue;
+            }
             self.dataset(dataset, full(dataset.name()))?;
         }
         for inner in &groups {
@@ -143,6 +152,9 @@ impl Hdf5Walk {
 /// What holds no class, as other programs than MATLAB write it.
 const NO_CLASS: &str = "no variable of MATLAB (it lacks the attribute MATLAB_class)";
 
+/// What each of several structures holds.
+const FIELD: &str = "a field of structures in an array";
+
 fn class(dataset: &Dataset) -> Result<Hdf5Class, Refused> {
     let attribute = |key| attribute(dataset.attribute(key));
     let class = attribute("MATLAB_class")?.map(text).transpose()?;
@@ -157,9 +169,7 @@ fn class(dataset: &Dataset) -> Result<Hdf5Class, Refused> {
         Some("char") => Hdf5Class::LeftOut("text"),
         Some("cell") => Hdf5Class::LeftOut("cells"),
         Some(_) => Hdf5Class::LeftOut("an object"),
-        None if matches!(dataset.dtype(), Datatype::Reference { .. }) => {
-            Hdf5Class::LeftOut("a field of structures in an array")
-        }
+        None if matches!(dataset.dtype(), Datatype::Reference { .. }) => Hdf5Class::LeftOut(FIELD),
         None => Hdf5Class::LeftOut(NO_CLASS),
     })
 }

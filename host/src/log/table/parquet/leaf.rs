@@ -111,7 +111,12 @@ fn meaning(field: &Type) -> Result<LeafMeaning, &'static str> {
         TimeUnit::NANOS => 1e9,
     };
     let decimal = |scale: i32| LeafMeaning::Over(10f64.powi(scale));
+    let is_decimal = matches!(facts.logical_type_ref(), Some(LogicalType::Decimal(_)))
+        || facts.converted_type() == ConvertedType::DECIMAL;
     match field.get_physical_type() {
+        Physical::BYTE_ARRAY | Physical::FIXED_LEN_BYTE_ARRAY if is_decimal => {
+            return Err("decimals of up to 128 bits; save it as float64");
+        }
         Physical::BYTE_ARRAY => return Err("text or bytes"),
         Physical::FIXED_LEN_BYTE_ARRAY => return Err("bytes"),
         Physical::INT96 => return Ok(LeafMeaning::Moment(1e9)),

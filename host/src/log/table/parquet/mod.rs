@@ -61,7 +61,7 @@ pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<LogTable> {
     ) in leaves.into_iter().zip(read)
     {
         match columns.map_err(|error| broken(&said(&error)))? {
-            Err(why) => table.left_out.push((name, why)),
+            Err(why) => table.left_out.push((name, why.into())),
             Ok(columns) => {
                 let numbered = element_level.is_some();
                 for (place, column) in columns.into_iter().enumerate() {
