@@ -26,7 +26,7 @@ pub fn noise(motions: &[Motion], series: &[&[f64]], declared_resolution: Option<
     let rounding = resolution.unwrap_or(0.0) / 12f64.sqrt();
     let times: Vec<&[f64]> = motions.iter().map(|m| m.time_s.as_slice()).collect();
     let differences = differences(&times, series);
-    let seen = difference_noise(&differences, resolution.unwrap_or(0.0));
+    let seen = difference_noise(&differences);
     let counts = seen.is_finite() && (rounding == 0.0 || alternation(&differences) < -0.6);
     let known = rounding.max(LEAST);
     match counts && seen > known {
@@ -146,35 +146,15 @@ fn relative_error(differences: usize) -> f64 {
     OF_MEDIAN * (COUNT_AS_ONE / differences.max(1) as f64).sqrt()
 }
 
-/// Standard deviation of the white noise whose differences have this median magnitude; readings
-/// come in steps of the resolution, where it is not 0.
-fn difference_noise(differences: &[Vec<f64>], resolution: f64) -> f64 {
+/// Standard deviation of the white noise whose differences have this median magnitude.
+fn difference_noise(differences: &[Vec<f64>]) -> f64 {
     let mut magnitudes: Vec<f64> = differences.iter().flatten().map(|x| x.abs()).collect();
     if magnitudes.is_empty() {
         return f64::INFINITY;
     }
-    1.4826 * median(&mut magnitudes, resolution) / gain().sqrt()
-}
-
-/// Median of magnitudes that come in steps: each stands for all values that are rounded to it, of
-/// which as many lie below the median as above. A twelfth of a step decides on a percent of the
-/// noise; the middle one of the magnitudes alone is half a step off.
-fn median(magnitudes: &mut [f64], step: f64) -> f64 {
-    let half = magnitudes.len() / 2;
-    let (_, middle, _) = magnitudes.select_nth_unstable_by(half, f64::total_cmp);
-    let middle = *middle;
-    if step <= 0.0 {
-        return middle;
-    }
-    let centre = step * (middle / step).round();
-    let (low, high) = ((centre - 0.5 * step).max(0.0), centre + 0.5 * step);
-    let below = magnitudes.iter().filter(|x| **x < low).count() as f64;
-    let within = magnitudes
-        .iter()
-        .filter(|x| (low..high).contains(*x))
-        .count() as f64;
-    let share = (0.5 * magnitudes.len() as f64 - below) / within.max(1.0);
-    low + share.clamp(0.0, 1.0) * (high - low)
+    let middle = magnitudes.len() / 2;
+    let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
+    1.4826 * *median / gain().sqrt()
 }
 
 #[cfg(test)]
@@ -201,22 +181,6 @@ mod tests {
         };
         let held = (0..LOGS).filter(|seed| holds(*seed)).count();
         assert!((276..=294).contains(&held), "{held}");
-    }
-
-    /// The median of sixth differences of whole steps is a whole number of them, of some ten.
-    #[test]
-    fn noise_of_less_than_a_step_is_estimated_to_a_percent() {
-        const STEP: f64 = 1e-3;
-        for share in [0.4, 0.5, 0.57, 0.64, 0.8] {
-            let white = white(20_000, share * STEP, 3);
-            let read: Vec<f64> = white.iter().map(|x| STEP * (x / STEP).round()).collect();
-            let truth = STEP * (share * share + 1.0 / 12.0).sqrt();
-            let found = estimated(&read, Some(STEP)).deviation;
-            assert!(
-                (found / truth - 1.0).abs() < 0.015,
-                "{share}: {found} {truth}"
-            );
-        }
     }
 
     #[test]
