@@ -18,6 +18,10 @@ use crate::model::{Model, ParameterPath};
 /// thousand samples, by less than one standard error of a value.
 const ALIKE: f64 = 2e-4;
 
+/// Root-mean-square weighted residual up to which two ways that agree are believed. Above it a false
+/// valley may have drawn both, or the model lacks something; then every way is gone.
+const NEAR_NOISE: f64 = 1.05;
+
 /// By which windows a fit was led to those that count. Two that took one road may be led astray by
 /// the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,8 +37,8 @@ pub(super) enum Route {
 /// Where a way ends.
 pub(super) type End = (Route, Fit);
 
-/// The lowest of the fits that these ways end in; no more ways are gone once two by different
-/// routes ended in the lowest valley. None of no way.
+/// The lowest of the fits that these ways end in; near the noise no more ways are gone once two by
+/// different routes ended in the lowest valley. None of no way.
 pub(super) fn lowest(ways: impl IntoIterator<Item = End>) -> Option<Fit> {
     let (mut best, mut simulations) = (None::<Fit>, 0);
     let mut ends: Vec<(Route, f64)> = Vec::new();
@@ -48,7 +52,8 @@ pub(super) fn lowest(ways: impl IntoIterator<Item = End>) -> Option<Fit> {
         if best.is_none() || cost < least {
             best = Some(fit);
         }
-        if is_confirmed(&ends) {
+        let left = least.min(cost) / best.as_ref().map_or(1, |b| b.residuals.count()).max(1) as f64;
+        if left.sqrt() < NEAR_NOISE && is_confirmed(&ends) {
             break;
         }
     }

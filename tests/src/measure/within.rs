@@ -171,7 +171,7 @@ fn outcomes(path: &Path) -> Result<Vec<Within>, String> {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         Err(error) => return Err(said(error.to_string())),
     };
-    let lines = text.lines().map(|line| serde_json::from_str(line));
+    let lines = text.lines().map(serde_json::from_str);
     let read: Result<Vec<Within>, _> = lines.collect();
     read.map_err(|why| said(format!("no outcome: {why}")))
 }
