@@ -4,6 +4,7 @@ use crate::errors::{exception, usage};
 use crate::logs::{FrameFile, is_frame, request};
 use crate::model::Model;
 use crate::value::plain;
+use handstand::fitting::estimate;
 use handstand::log::RawLog;
 use handstand::log::init::Draft as LogDraft;
 use pyo3::prelude::*;
@@ -88,6 +89,7 @@ pub fn init(
             draft.set_links(what, &values).map_err(exception)?;
         }
     }
+    estimate(&mut draft, &asked).map_err(told)?;
     let text = draft.toml().map_err(exception)?;
     Ok(Draft {
         model: Model::of(text, PathBuf::from("model.toml")).map_err(exception)?,

@@ -130,6 +130,11 @@ pub fn warn(findings: &[LogFinding], talk: &Talk) {
     }
 }
 
+/// A model or a log, whichever comes, its error with the remedy.
+pub fn file(text: &str) -> Result<LogRequest, String> {
+    text.parse().map_err(said)
+}
+
 /// A log argument, its error with the remedy: `drop.csv`, `drop.csv:26-139`.
 pub fn log(text: &str) -> Result<LogRequest, String> {
     let request: LogRequest = text.parse().map_err(said)?;

@@ -41,7 +41,7 @@ use std::sync::Arc;
 #[derive(Debug, clap::Args)]
 pub struct LabArgs {
     /// Model (TOML, URDF, MJCF) and logs to begin with; without a model one is made of the logs
-    #[arg(value_name = "MODEL|LOG", value_parser = input::log)]
+    #[arg(value_name = "MODEL|LOG", value_parser = input::file)]
     files: Vec<LogRequest>,
     /// Folder that keeps the sessions [default: a folder of the user's state]
     #[arg(long, value_name = "DIR")]

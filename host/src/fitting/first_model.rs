@@ -131,8 +131,9 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
         );
     }
     for (index, link) in model.links.iter().enumerate() {
-        if link.com_m != drafted.links[index].com_m {
-            let at = |field: LinkField| ParameterPath::Link { index, field };
+        let at = |field: LinkField| ParameterPath::Link { index, field };
+        let is_fitted = told.iter().any(|(path, _)| *path == at(LinkField::Com));
+        if !is_fitted && link.com_m != drafted.links[index].com_m {
             draft.take(&at(LinkField::Com), link.com_m);
             draft.take(&at(LinkField::Mass), link.mass_kg);
             let words = format!("{} kg at {} m", link.mass_kg, link.com_m);

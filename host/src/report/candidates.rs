@@ -100,7 +100,7 @@ fn rows(diagnosis: &Diagnosis, tried: &[&RuledOut], full: f64, with_best: bool) 
     let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
     let headings = html! {
         th { "Added to the model" } th.number { (fitted) } th.number { (held_out) }
-        th.wide {} th.number { "BIC change" } th { "Why not" }
+        th.wide { "Drawn" } th.number { "BIC change" } th { "Why not" }
     };
     let rows = html! {
         @if with_best { (best(diagnosis, full)) }

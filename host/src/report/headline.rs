@@ -114,7 +114,7 @@ fn list(title: &str, class: &str, items: &[String]) -> Markup {
     html! {
         @if !items.is_empty() {
             div class={ "box " (class) } {
-                h3 { (title) }
+                h2 { (title) }
                 ul { @for item in items { li { (with_commands(item)) } } }
             }
         }

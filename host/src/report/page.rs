@@ -90,5 +90,5 @@ pub(crate) fn self_contained(title: &str, style: &Markup, body: &Markup) -> Stri
 
 /// A table under these headings (`th` elements); it scrolls sideways where it is too wide.
 pub(crate) fn table(headings: &Markup, rows: &Markup) -> Markup {
-    html! { div.scroll { table { thead { tr { (headings) } } tbody { (rows) } } } }
+    html! { div.scroll tabindex="0" { table { thead { tr { (headings) } } tbody { (rows) } } } }
 }

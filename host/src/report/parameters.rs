@@ -37,7 +37,7 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 fn values(diagnosis: &Diagnosis) -> Markup {
     let headings = html! {
         th { "Of" } th { "Parameter" } th.number { "Value" } th.number { "95 % interval" }
-        th { "Unit" } th { "" }
+        th { "Unit" } th { "Note" }
     };
     let rows = html! {
         @for effect in &diagnosis.effects {

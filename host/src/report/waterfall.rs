@@ -119,7 +119,7 @@ fn by_motion(motions: &[MotionError], quantity: MeasuredSignal) -> Markup {
     };
     let headings = html! {
         th { "Motion" } th { "Role" } th.number { (before) } th.number { (after_change) }
-        th.wide {}
+        th.wide { "Drawn" }
     };
     let rows = html! {
         @for motion in motions {

@@ -1,7 +1,7 @@
 //! The README's own path, walked on drawn rigs: from a log to `init`, `log check`, `diagnose` and
 //! `add`, by the program's own commands, with nothing mended by hand.
 //!
-//! The rigs have their own equations and integrator ([`simulation`]), apart from the library's and
+//! The rigs have their own equations and integrator (`simulation.rs`), apart from the library's and
 //! from those of the challenges.
 
 mod names;

@@ -62,7 +62,7 @@ pub fn steps(session: &LabSession, saved: &SavedSession) -> Result<Markup> {
             span.number { @if let Some(first) = rows.first() { (first.text(floor)) } } span {}
         }
         @if let Some(step) = saved.step().filter(|step| !step.values.is_empty()) {
-            h3 { "Values of model " (saved.current) ", as fitted" }
+            h2 { "Values of model " (saved.current) ", as fitted" }
             (values::table(step))
         }
         div.row {

@@ -164,7 +164,7 @@ impl Slopes {
 }
 
 /// So near a pose a joint that hangs there rests, rad: what lies further off has a zero of its own.
-const AT_POSE_RAD: f64 = 0.2;
+const AT_POSE_RAD: f64 = 0.3;
 
 /// `hanging`, `horizontal` or `upright`, whichever explains that a free joint rests around this
 /// angle; none where none does.

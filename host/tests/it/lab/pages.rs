@@ -246,7 +246,9 @@ fn a_public_log_becomes_a_better_model_by_the_pages_alone() {
         ));
     }
     browser.press_on("#new-model button", "Enter");
+    // The form leads to the curves.
     let before = error_now(&mut browser);
+    browser.open(&format!("http://127.0.0.1:{}/s/1/data", server.port));
     browser.until("document.getElementById('findings')");
     browser.pictures("10-public-model");
 
