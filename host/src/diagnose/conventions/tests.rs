@@ -163,3 +163,64 @@ fn milliseconds_declared_as_seconds_are_found() {
     assert_eq!(findings[0].kind, "time_unit", "{findings:#?}");
     assert!(findings[0].remedy.contains("\"ms\""), "{findings:#?}");
 }
+
+#[test]
+fn what_a_model_of_guesses_says_of_a_log_is_a_hint() {
+    let (_folder, model, log) = arm("coulomb");
+    let findings = found(&model, &log, |m| {
+        m.log.joints[0].position.as_mut().unwrap().columns_mut()[0].reversed = true;
+        m.guessed = true;
+    });
+    let first = &findings[0];
+    assert_eq!(
+        (first.kind, first.severity),
+        ("sign", crate::log::Severity::Warn)
+    );
+}
+
+/// A level slide of 95 kg to and fro under a controller, 200 times a second: viscous and Coulomb
+/// friction take most of its force. Columns say no unit.
+fn rubbing_slide() -> String {
+    use std::fmt::Write as _;
+    const STEP_S: f64 = 1e-4;
+    let (mut text, mut q, mut w, mut u, mut goal) =
+        (String::from("t,x,u\n"), -0.12, 0.0, 0.0, -0.12_f64);
+    for step in 0..120_000_u32 {
+        let time_s = f64::from(step) * STEP_S;
+        if step % 50 == 0 {
+            let phase = (0.25 * time_s).fract();
+            let place = 0.12
+                * if phase < 0.5 {
+                    4.0 * phase - 1.0
+                } else {
+                    3.0 - 4.0 * phase
+                };
+            u = 4e4 * (place - q) + 4e3 * ((place - goal) * 200.0 - w);
+            goal = place;
+            let _ = writeln!(text, "{time_s:.4},{q:.6},{u:.4}");
+        }
+        let acceleration = (u - 200.0 * w - 20.0 * f64::tanh(w / 5e-5)) / 95.0;
+        w += STEP_S * acceleration;
+        q += STEP_S * w;
+    }
+    text
+}
+
+#[test]
+fn friction_that_takes_most_of_a_drive_is_no_wrong_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, log) = (
+        folder.path().join("slide.toml"),
+        folder.path().join("a.csv"),
+    );
+    std::fs::write(&log, rubbing_slide()).unwrap();
+    let text = "[rig]\nname = \"slide\"\nangle_zero = \"hanging\"\n[[link]]\ncom_m = 0.0\n\
+        mass_kg = 95.0\ninertia_kg_m2 = 1.0\n[[joint]]\naxis = \"slide\"\n\
+        slide_rad = 1.5707963267948966\ndrive = \"torque\"\n[log]\n\
+        time = { column = \"t\", unit = \"s\" }\n[[log.joint]]\n\
+        position = { column = \"x\", unit = \"m\" }\ninput = { column = \"u\", unit = \"N\" }\n";
+    std::fs::write(&model, text).unwrap();
+    let findings = found(&model, &log, |_| ());
+    let units: Vec<&LogFinding> = findings.iter().filter(|f| f.kind == "unit").collect();
+    assert!(units.is_empty(), "{units:?}");
+}
