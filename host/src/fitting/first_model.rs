@@ -53,8 +53,8 @@ struct Meaning {
     reversed: Vec<bool>,
 }
 
-/// A meaning with the roughly fitted model.
-struct Candidate {
+/// A meaning with the model fitted roughly to it.
+struct FittedMeaning {
     meaning: Meaning,
     model: Model,
     rms_rad: f64,
@@ -99,9 +99,10 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     let data = windows(&best.model, few, WINDOW_S);
     let free = free_of(&rubbing, draft);
     // Short windows may lead astray where they show little: a swing of seconds.
-    let mut begun = match drafted.driven_joints().is_empty() {
-        true => starts(&rubbing, &free),
-        false => vec![rubbing],
+    let mut begun = if drafted.driven_joints().is_empty() {
+        starts(&rubbing, &free)
+    } else {
+        vec![rubbing]
     };
     begun.iter_mut().for_each(|model| model.angle_zero = *zero);
     begun.push(best.model);
@@ -159,7 +160,7 @@ fn windows(model: &Model, motions: Vec<Motion>, seconds: f64) -> FitData {
 
 /// The meaning of the log that a rough fit explains best; the drafted one unless another is clearly
 /// better. None where nothing moves.
-fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Candidate> {
+fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<FittedMeaning> {
     let few = windows(model, excerpts(motions, FEW), SHORT_S);
     if few.windows.is_empty() || !moves(&few) {
         return None;
@@ -186,21 +187,22 @@ fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Cand
         let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let best = best.resume(&data, FitOptions::iterations(ON).rough());
         let rms_rad = best.rms(&data);
-        Some(Candidate {
+        Some(FittedMeaning {
             meaning,
             model: best.model,
             rms_rad,
         })
     };
     let all = meanings(model, draft).into_par_iter().filter_map(fitted);
-    let mut all: Vec<Candidate> = all.collect();
+    let mut all: Vec<FittedMeaning> = all.collect();
     all.retain(|candidate| candidate.rms_rad.is_finite());
     let drafted = all.first()?.rms_rad;
-    let by_error = |a: &Candidate, b: &Candidate| a.rms_rad.total_cmp(&b.rms_rad);
+    let by_error = |a: &FittedMeaning, b: &FittedMeaning| a.rms_rad.total_cmp(&b.rms_rad);
     let best = all.iter().min_by(|a, b| by_error(a, b))?;
-    let chosen = match best.rms_rad < CLEARLY * drafted {
-        true => best.meaning.clone(),
-        false => all.first()?.meaning.clone(),
+    let chosen = if best.rms_rad < CLEARLY * drafted {
+        best.meaning.clone()
+    } else {
+        all.first()?.meaning.clone()
     };
     all.into_iter()
         .find(|candidate| candidate.meaning == chosen)

@@ -34,9 +34,10 @@ pub(super) fn finding(found: &Found, model: &Model, file: ModelFile) -> Result<L
     }
     Ok(LogFinding {
         kind: kind(&trial.remedy),
-        severity: match doubt.is_some() || trial.remedy.is_continuous() {
-            true => Severity::Warn,
-            false => Severity::Refuse,
+        severity: if doubt.is_some() || trial.remedy.is_continuous() {
+            Severity::Warn
+        } else {
+            Severity::Refuse
         },
         place: Some(Place::file(file.path)),
         what: format!("{}; {}", what(&trial.remedy, model), proof(trial, model)),
