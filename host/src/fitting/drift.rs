@@ -84,7 +84,10 @@ pub fn drift(
         match fitted_values(&found, &data) {
             (values, Some(_)) => Ok(values),
             _ => Err(Undetermined {
-                blind: blind(&found, &data),
+                blind: blind(&found, &data)
+                    .iter()
+                    .map(ToString::to_string)
+                    .collect(),
                 mixed: Vec::new(),
             }),
         }

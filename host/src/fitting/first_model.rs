@@ -18,7 +18,7 @@ use super::ways::best_fit;
 use crate::error::Result;
 use crate::log::init::Draft;
 use crate::log::{LogRequest, Motion, excerpts, read};
-use crate::model::{AngleZero, Link, LinkField, Model, ParameterPath};
+use crate::model::{AngleZero, Drive, Link, LinkField, Model, ParameterPath};
 use crate::output::number::{measured, mrad};
 use rayon::prelude::*;
 use std::path::Path;
@@ -39,8 +39,12 @@ const ON: usize = 12;
 const CLEARLY: f64 = 0.7;
 /// A value is told by the log where its interval reaches no further than so many times its size.
 const TOLD: f64 = 3.0;
-/// Halvings of a lever.
-const LEVERS: usize = 4;
+/// Friction is shown where its interval reaches less than so many times its size, and not to zero.
+const SHOWN: f64 = 0.9;
+/// Levers that are shortened, in all.
+const LEVERS: usize = 6;
+/// Least inertia about a link's own centre of mass, over that of its mass there about the joint.
+const ROOM: f64 = 0.7;
 /// Estimates beyond so many times a guess, either way, are none.
 const FAR: f64 = 30.0;
 /// A joint that moves less than so many standard deviations of its reading tells nothing.
@@ -110,16 +114,24 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return Ok(());
     };
-    let (model, told) = told_by(&drafted, &best.model, &data, free, draft.is_known("mass"));
+    let settled = Settling {
+        drafted: &drafted,
+        data: &data,
+        mass_is_known: draft.is_known("mass"),
+    }
+    .settle(&best.model, free);
+    write_down(draft, &drafted, settled);
+    Ok(())
+}
+
+/// Puts what was found into the draft, with a note of each value.
+fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
+    let Settled { model, values } = settled;
     let friction = model.effects.iter().filter(|effect| is_friction(effect));
     draft.friction = friction.cloned().collect();
-    draft.free = Some(told.iter().map(|(path, _)| path.to_string()).collect());
-    if !told.is_empty()
-        && !drafted
-            .joints
-            .iter()
-            .any(|joint| joint.drive.name() == "torque")
-    {
+    draft.free = Some(values.iter().map(|(path, _)| path.to_string()).collect());
+    let states_torque = |drive: &Drive| drive.name() == "torque";
+    if !values.is_empty() && !drafted.joints.iter().any(|j| states_torque(&j.drive)) {
         let why = if draft.is_known("mass") {
             "as you say"
         } else {
@@ -133,24 +145,32 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     }
     for (index, link) in model.links.iter().enumerate() {
         let at = |field: LinkField| ParameterPath::Link { index, field };
-        let is_fitted = told.iter().any(|(path, _)| *path == at(LinkField::Com));
+        let is_fitted = values.iter().any(|(path, _)| *path == at(LinkField::Com));
         if !is_fitted && link.com_m != drafted.links[index].com_m {
             draft.take(&at(LinkField::Com), link.com_m);
             draft.take(&at(LinkField::Mass), link.mass_kg);
-            let words = format!("{} kg at {} m", link.mass_kg, link.com_m);
-            let why = "a guess: with a longer lever no inertia would be left";
+            let words = format!("{} kg at {} m", rounded(link.mass_kg), rounded(link.com_m));
+            let why = "a guess: a longer lever leaves no room for the inertia that the log shows";
             draft.note(&format!("mass of link {}", index + 1), &words, why);
         }
     }
-    for (path, interval) in told {
+    for (path, interval) in values {
         let Some(value) = path.get(&model) else {
             continue;
         };
-        let words = measured(value, interval.low, interval.high, path.unit());
-        draft.note(&path.to_string(), &words, "estimated from the log");
+        let name = path.to_string();
+        match interval {
+            Some(told) => {
+                let words = measured(value, told.low, told.high, path.unit());
+                draft.note(&name, &words, "estimated from the log");
+            }
+            None => {
+                let words = format!("{} {}", rounded(value), path.unit());
+                draft.note(&name, words.trim_end(), "a guess: the log hardly tells it");
+            }
+        }
         draft.take(&path, value);
     }
-    Ok(())
 }
 
 fn windows(model: &Model, motions: Vec<Motion>, seconds: f64) -> FitData {
@@ -279,59 +299,151 @@ fn read_so(motions: &[Motion], reversed: &[bool]) -> Vec<Motion> {
     motions
 }
 
-/// The model fitted, and those of the values that the motions determine, with their intervals. What
-/// they do not determine goes back to where it began, friction to none.
-fn told_by(
-    guessed: &Model,
-    begun: &Model,
-    data: &FitData,
-    mut free: Vec<ParameterPath>,
+/// What a first model is given.
+struct Settled {
+    model: Model,
+    /// What every later fit may change, with the interval of what the log determines.
+    values: Vec<(ParameterPath, Option<Interval>)>,
+}
+
+/// Tells what a log determines from what it does not.
+struct Settling<'a> {
+    drafted: &'a Model,
+    data: &'a FitData,
     mass_is_known: bool,
-) -> (Model, Vec<(ParameterPath, Interval)>) {
-    let mut model = begun.clone();
-    let mut levers = 0;
-    loop {
-        let found = best_fit(&model, &free, data);
-        // Less inertia than the mass has about its joint: its lever is shorter than guessed.
-        if levers < LEVERS
-            && let Some(link) = too_inert(&found)
-        {
-            levers += 1;
-            model = found.model;
-            shorten(&mut model.links[link], mass_is_known);
-            continue;
-        }
-        let Some(intervals) = intervals(&found, data).map(|(intervals, _)| intervals) else {
-            // The least important stands last.
-            let Some(path) = free.pop() else {
-                return (model, Vec::new());
+}
+
+impl Settling<'_> {
+    /// The model fitted from where it began. Friction stays where the log shows some. A drive's or a
+    /// link's value that the log hardly determines stays free for all that: it is a guess, and held
+    /// wrong it bends whatever is looked for beside it.
+    fn settle(&self, begun: &Model, mut free: Vec<ParameterPath>) -> Settled {
+        let mut model = begun.clone();
+        let (mut levers, mut held) = (0, Vec::new());
+        loop {
+            let found = fit(&model, &free, self.data, None, FitOptions::iterations(ON));
+            if levers < LEVERS
+                && let Some(link) = self.crowded(&found.model, &free)
+            {
+                levers += 1;
+                model = found.model;
+                self.make_room(&mut model.links[link]);
+                continue;
+            }
+            let Some(intervals) = intervals(&found, self.data).map(|(intervals, _)| intervals)
+            else {
+                // The least important stands last.
+                let Some(path) = free.pop() else {
+                    return settled(model, Vec::new(), held);
+                };
+                forget(&mut model, &path, self.drafted);
+                continue;
             };
-            forget(&mut model, &path, guessed);
-            continue;
-        };
-        let reach = |index: usize| {
-            let interval = &intervals[index];
-            let size = free[index].get(&found.model).unwrap_or(0.0).abs();
-            0.5 * (interval.high - interval.low) / size.max(1e-12)
-        };
-        let on_bound = found.on_bound();
-        let strange = |index: usize| {
-            let value = free[index].get(&found.model).unwrap_or(0.0);
-            let guess = free[index].get(guessed).unwrap_or(value);
-            !is_plausible(&free[index], value, guess)
-        };
-        let untold = |index: &usize| {
-            on_bound[*index] || reach(*index).is_nan() || reach(*index) > TOLD || strange(*index)
-        };
-        let worst = (0..free.len()).filter(untold);
-        let Some(worst) = worst.max_by(|a, b| reach(*a).total_cmp(&reach(*b))) else {
-            let told = free.into_iter().zip(intervals).collect();
-            return (found.model, told);
-        };
-        model = found.model;
-        let path = free.remove(worst);
-        forget(&mut model, &path, guessed);
+            if let Some(index) = self.untold_friction(&found, &free, &intervals) {
+                model = found.model;
+                forget(&mut model, &free.remove(index), self.drafted);
+                continue;
+            }
+            if let Some(index) = self.strange(&found, &free) {
+                model = found.model;
+                let path = free.remove(index);
+                forget(&mut model, &path, self.drafted);
+                if let ParameterPath::Link { index, .. } = path {
+                    model.links[index].com_m = self.drafted.links[index].com_m;
+                    // Its guesses go together, and no more room is made for what they do not follow.
+                    levers = LEVERS;
+                }
+                held.push(path);
+                continue;
+            }
+            let is_told = |index: usize| reach(&found, &intervals, index) <= TOLD;
+            let told =
+                (0..free.len()).map(|index| is_told(index).then(|| intervals[index].clone()));
+            let values = free.iter().cloned().zip(told).collect();
+            return settled(found.model, values, held);
+        }
     }
+
+    /// A link whose lever leaves its inertia little room below what was fitted.
+    fn crowded(&self, model: &Model, free: &[ParameterPath]) -> Option<usize> {
+        free.iter().find_map(|path| match path {
+            ParameterPath::Link {
+                index,
+                field: LinkField::Inertia,
+            } => {
+                let link = &model.links[*index];
+                let about_mass_kg_m2 = link.mass_kg * link.com_m * link.com_m;
+                (link.inertia_kg_m2 < ROOM * about_mass_kg_m2).then_some(*index)
+            }
+            _ => None,
+        })
+    }
+
+    /// Shortens a link's lever to half the length of the pendulum that swings alike, or to half of
+    /// itself, at the same pull of gravity unless its mass is known, and the same inertia about its
+    /// joint.
+    fn make_room(&self, link: &mut Link) {
+        let pull_kg_m = link.mass_kg * link.com_m;
+        let about_joint_kg_m2 = link.inertia_kg_m2 + pull_kg_m * link.com_m;
+        let alike_m = about_joint_kg_m2 / pull_kg_m;
+        link.com_m = (0.5 * alike_m).clamp(0.5 * link.com_m, link.com_m);
+        if !self.mass_is_known {
+            link.mass_kg = pull_kg_m / link.com_m;
+        }
+        link.inertia_kg_m2 = about_joint_kg_m2 - link.mass_kg * link.com_m * link.com_m;
+    }
+
+    /// Friction of which the log does not show that there is some; the least certain first.
+    fn untold_friction(
+        &self,
+        found: &Fit,
+        free: &[ParameterPath],
+        intervals: &[Interval],
+    ) -> Option<usize> {
+        let on_bound = found.on_bound();
+        let reach = |index: usize| {
+            if on_bound[index] {
+                f64::INFINITY
+            } else {
+                reach(found, intervals, index)
+            }
+        };
+        let friction = (0..free.len())
+            .filter(|index| matches!(free[*index], ParameterPath::Effect { .. }))
+            .filter(|index| !(reach(*index) <= SHOWN));
+        friction.max_by(|a, b| reach(*a).total_cmp(&reach(*b)))
+    }
+
+    /// A value that no bench has, or that fled to its bound.
+    fn strange(&self, found: &Fit, free: &[ParameterPath]) -> Option<usize> {
+        let on_bound = found.on_bound();
+        (0..free.len()).find(|index| {
+            let value = free[*index].get(&found.model).unwrap_or(0.0);
+            let guess = free[*index].get(self.drafted).unwrap_or(value);
+            on_bound[*index] || !is_plausible(&free[*index], value, guess)
+        })
+    }
+}
+
+/// What was held at its guess stays free, untold.
+fn settled(
+    model: Model,
+    mut values: Vec<(ParameterPath, Option<Interval>)>,
+    held: Vec<ParameterPath>,
+) -> Settled {
+    values.extend(held.into_iter().map(|path| (path, None)));
+    Settled { model, values }
+}
+
+/// Half an interval's width over its value.
+fn reach(found: &Fit, intervals: &[Interval], index: usize) -> f64 {
+    let interval = &intervals[index];
+    let size = found.free[index].get(&found.model).unwrap_or(0.0).abs();
+    0.5 * (interval.high - interval.low) / size.max(1e-12)
+}
+
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// Whether an estimate is one that a bench has: a mass of 60 kg on a servo tells of a motion that the
@@ -341,33 +453,6 @@ fn is_plausible(path: &ParameterPath, value: f64, guess: f64) -> bool {
         ParameterPath::Effect { .. } => true,
         _ => (guess / FAR..=guess * FAR).contains(&value),
     }
-}
-
-/// A link whose own inertia was fitted to none.
-fn too_inert(found: &Fit) -> Option<usize> {
-    let on_bound = found.on_bound();
-    let mut bounds = found
-        .free
-        .iter()
-        .zip(on_bound)
-        .filter(|(_, on_bound)| *on_bound);
-    bounds.find_map(|(path, _)| match path {
-        ParameterPath::Link {
-            index,
-            field: LinkField::Inertia,
-        } => Some(*index),
-        _ => None,
-    })
-}
-
-/// Halves a link's lever, at the same pull of gravity unless its mass is known, and begins with an
-/// even rod's inertia.
-fn shorten(link: &mut Link, mass_is_known: bool) {
-    link.com_m *= 0.5;
-    if !mass_is_known {
-        link.mass_kg *= 2.0;
-    }
-    link.inertia_kg_m2 = link.mass_kg * link.com_m * link.com_m / 3.0;
 }
 
 /// Takes a value back: friction out, another to its guess.

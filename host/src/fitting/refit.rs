@@ -14,7 +14,7 @@ use super::mixture::untold_mixture;
 use super::polish::polish;
 use super::progress::{Progress, RefitSteps};
 use super::residual::residuals;
-use super::solve::fit_start_states;
+use super::solve::{fit, fit_start_states};
 use super::stairs::told_by_others;
 use super::ways::{best_fit, stated};
 use super::windows::MotionWindow;
@@ -22,6 +22,7 @@ use crate::fitting::Candidate;
 use crate::log::Split;
 use crate::model::edit::FitRecord;
 use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
+use crate::output::number::exact;
 use std::cell::Cell;
 
 /// A refitted model.
@@ -88,9 +89,10 @@ impl Refitted {
         logs: Vec<(String, String)>,
     ) -> (EffectInstance, FitRecord) {
         let own: Vec<ParameterPath> = candidate.paths().collect();
+        // What was held, its fitted model has alone.
         let values = own.iter().filter_map(|path| {
-            let at = self.free.iter().position(|free| free == path)?;
-            Some(self.values[at].value)
+            let at = self.free.iter().position(|free| free == path);
+            at.map_or(path.get(&self.model), |at| Some(self.values[at].value))
         });
         let fitted = self.record(logs).about(|path| own.contains(&path));
         (candidate.instance(&values.collect::<Vec<f64>>()), fitted)
@@ -243,12 +245,25 @@ impl Refit<'_> {
         if let Some(judged) = &held_out {
             found = told_by_others(found, data, judged);
         }
-        let (values, Some(_)) = fitted_values(&found, data) else {
+        let mut unobserved = model.log.notes();
+        let (mut values, mut told) = fitted_values(&found, data);
+        if told.is_none() {
+            let held = blind_beside_others(&found, data);
+            if !held.is_empty() {
+                found = with_held(found, &held, data);
+                (values, told) = fitted_values(&found, data);
+                unobserved.extend(held.iter().map(|path| said_of_held(path, &found.model)));
+            }
+        }
+        if told.is_none() {
             return Err(Undetermined {
-                blind: blind(&found, data),
+                blind: blind(&found, data)
+                    .iter()
+                    .map(ToString::to_string)
+                    .collect(),
                 mixed: Vec::new(),
             });
-        };
+        }
         let fitted = self.error_on_fitted(&found);
         let rms_rad = |model: &Model, data: &FitData| fit_start_states(model, data).rms(data);
         let mut windows = data.motion_windows(self.horizon);
@@ -271,7 +286,7 @@ impl Refit<'_> {
             },
             free: found.free,
             windows,
-            unobserved: model.log.notes(),
+            unobserved,
             converged: found.converged,
             shorter_step_s: (found.model.step_s < model.step_s).then_some(found.model.step_s),
             model: found.model,
@@ -294,8 +309,42 @@ impl Refit<'_> {
     }
 }
 
+/// The blind parameters of effects of which another one tells: a dead zone whose commands begin at
+/// zero has a width below which nothing shows.
+fn blind_beside_others(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
+    let mut blind = blind(found, data);
+    let effect = |path: &ParameterPath| match path {
+        ParameterPath::Effect { id, joint, .. } => Some((*id, *joint)),
+        _ => None,
+    };
+    let all = blind.clone();
+    blind.retain(|path| {
+        let own = effect(path);
+        let tells = |other: &&ParameterPath| effect(other) == own && !all.contains(other);
+        own.is_some() && found.free.iter().any(|other| tells(&other))
+    });
+    blind
+}
+
+/// The fit with some values held where they are.
+fn with_held(mut found: Fit, held: &[ParameterPath], data: &FitData) -> Fit {
+    found.model.free.retain(|path| !held.contains(path));
+    let mut free = found.free;
+    free.retain(|path| !held.contains(path));
+    let options = FitOptions::default();
+    fit(&found.model, &free, data, Some(&found.nodes), options)
+}
+
+fn said_of_held(path: &ParameterPath, model: &Model) -> String {
+    let value = path.get(model).unwrap_or(f64::NAN);
+    format!(
+        "`{path}` changes nothing in these motions: it is held at {}.",
+        exact(value)
+    )
+}
+
 /// The free parameters whose change leaves every prediction as it was.
-pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<String> {
+pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
     let base = residuals(&found.model, data, &found.nodes);
     let changes_nothing = |path: &&ParameterPath| {
         let value = path.get(&found.model).unwrap_or(0.0);
@@ -305,6 +354,5 @@ pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<String> {
         let mut moved = found.model.clone();
         path.set(&mut moved, value + size) && residuals(&moved, data, &found.nodes) == base
     };
-    let blind = found.free.iter().filter(changes_nothing);
-    blind.map(ToString::to_string).collect()
+    found.free.iter().filter(changes_nothing).cloned().collect()
 }

@@ -65,7 +65,7 @@ pub fn add_effect(
         Item::Value(Value::Array(array)) => array.push(table.into_inline_table()),
         _ => return Err(misfit(path, "`effect` is no list of tables")),
     }
-    set_free(&mut document, effect);
+    set_free(&mut document, effect, fitted);
     checked(document, path)
 }
 
@@ -198,8 +198,9 @@ fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
     }
 }
 
-/// Adds the effect's values to the list of free ones, if there is one, in the list's own layout.
-fn set_free(document: &mut DocumentMut, effect: &EffectInstance) {
+/// Adds the effect's values, those that were fitted where some were, to the list of free ones, if
+/// there is one, in the list's own layout.
+fn set_free(document: &mut DocumentMut, effect: &EffectInstance, fitted: Option<&FitRecord>) {
     let list = document
         .get_mut("fit")
         .and_then(Item::as_table_like_mut)
@@ -208,8 +209,11 @@ fn set_free(document: &mut DocumentMut, effect: &EffectInstance) {
     let Some(list) = list else {
         return;
     };
+    let is_fitted = |path: &ParameterPath| {
+        fitted.is_none_or(|record| record.intervals.iter().any(|(own, ..)| own == path))
+    };
     let values = ParameterPath::of_effect(effect).zip(&effect.values);
-    for (path, _) in values.filter(|(_, value)| value.is_finite()) {
+    for (path, _) in values.filter(|(path, value)| value.is_finite() && is_fitted(path)) {
         append(list, &path.to_string());
     }
 }

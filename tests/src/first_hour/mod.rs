@@ -9,5 +9,5 @@ mod rig;
 mod simulation;
 mod walk;
 
-pub use rig::{DrawnRig, DriveKind};
+pub use rig::{DrawnRig, DriveKind, Hidden};
 pub use walk::{End, Walk, walk};

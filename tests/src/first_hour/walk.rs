@@ -9,7 +9,8 @@ use std::process::Command;
 /// How a walk ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum End {
-    /// The hidden effect is in the verdict's set, or one of those that it leaves open.
+    /// The hidden effect is in the verdict's set, or one of those that it leaves open; or another
+    /// value of it, where the first model holds it.
     Found,
     /// The first model holds it already, estimated from the log, and nothing else is missing.
     InFirstModel,
@@ -109,7 +110,11 @@ fn end(rig: &DrawnRig, diagnosis: &Value, first_model: &str) -> End {
     let holds = |set: &Value| {
         let effects = set["effects"].as_array().into_iter().flatten();
         let mut kinds = effects.filter_map(|effect| effect["kind"].as_str());
-        kinds.any(|kind| ids.contains(&kind))
+        let values = set["wrong_values"].as_array().into_iter().flatten();
+        let mut values = values.filter_map(|value| value["path"].as_str());
+        let is_hidden = |path: &str| ids.iter().any(|id| path.starts_with(&format!("{id}@")));
+        let names_none = set["effects"].as_array().is_none_or(Vec::is_empty);
+        kinds.any(|kind| ids.contains(&kind)) || names_none && values.any(is_hidden)
     };
     let others = diagnosis["alternatives"].as_array().into_iter().flatten();
     let sets = || std::iter::once(diagnosis).chain(others.clone());

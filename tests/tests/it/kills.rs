@@ -1,15 +1,7 @@
 //! `record` survives `kill -9`: a sample of what `cargo xtask bench-record` does a thousand times.
 
+use super::program;
 use handstand_tests::kills::kill_recorders;
-use std::path::PathBuf;
-
-/// The program that the workspace's build left beside the tests.
-fn program() -> PathBuf {
-    let here = std::env::current_exe().unwrap();
-    let program = here.ancestors().nth(2).unwrap().join("handstand");
-    assert!(program.exists(), "build it first: cargo build -p handstand");
-    program
-}
 
 #[test]
 fn a_killed_recorder_leaves_a_file_that_lacks_a_second_at_most() {

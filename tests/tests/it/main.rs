@@ -6,6 +6,7 @@ mod dependencies;
 #[cfg(all(unix, simavr))]
 mod deploy;
 mod firmware;
+mod first_hour;
 mod fuzz;
 mod hidden;
 mod import;
@@ -16,3 +17,11 @@ mod mjcf;
 mod next;
 mod simulators;
 mod spoiled;
+
+/// The program that the workspace's build left beside the tests.
+fn program() -> std::path::PathBuf {
+    let here = std::env::current_exe().unwrap();
+    let program = here.ancestors().nth(2).unwrap().join("handstand");
+    assert!(program.exists(), "build it first: cargo build -p handstand");
+    program
+}

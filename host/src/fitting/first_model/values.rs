@@ -29,10 +29,12 @@ pub(super) fn rubbing(drafted: &Model, motions: &[Motion]) -> Model {
             index: joint,
             field: JointField::NoLoadSpeed,
         };
-        let resists = no_load.get(&model).is_some_and(f64::is_finite);
-        if let (true, Some(speed)) = (resists, no_load.get(&model)) {
+        let has_limit = no_load.get(&model).is_some_and(f64::is_finite);
+        if let (true, Some(speed)) = (has_limit, no_load.get(&model)) {
             let _ = no_load.set(&mut model, speed.max(FASTER * fastest));
         }
+        // A speed drive makes up for what its own speed takes away.
+        let resists = has_limit && model.joints[joint].drive.name() != "speed";
         let effects = [("coulomb", COULOMB_NM), ("viscous", VISCOUS_NM_S_RAD)];
         for (id, value) in effects {
             if resists && id == "viscous" {
@@ -80,19 +82,24 @@ pub(super) fn free_of(model: &Model, draft: &Draft) -> Vec<ParameterPath> {
             "position" => free.push(joint(index, JointField::GainPerRad)),
             "speed" => free.push(joint(index, JointField::GainSPerRad)),
             _ if mass_is_open(index) => free.push(link(index, LinkField::Mass)),
-            _ => free.push(link(index, LinkField::Com)),
+            _ if links == 1 => free.push(link(index, LinkField::Com)),
+            _ => {}
         }
         if model.joints[index].drive.motor().is_some() {
             free.push(joint(index, JointField::StallTorque));
         }
     }
     free.extend(friction_of(model, "coulomb"));
-    for index in (0..links).filter(|index| model.joints[*index].drive.motor().is_some()) {
-        free.push(joint(index, JointField::NoLoadSpeed));
-    }
+    // What a speed drive gives per rad/s holds its gain and its speed without load as one.
+    let limited = |index: &usize| ["duty", "position"].contains(&drive(*index));
+    free.extend(
+        (0..links)
+            .filter(limited)
+            .map(|index| joint(index, JointField::NoLoadSpeed)),
+    );
     free.extend(friction_of(model, "viscous"));
     for index in 0..links {
-        if model.joints[index].drive.is_driven() || index > 0 {
+        if model.joints[index].drive.is_driven() || links > 1 {
             free.push(link(index, LinkField::Inertia));
         }
         let mass = link(index, LinkField::Mass);

@@ -8,7 +8,7 @@ use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
 use super::name::{NameGuess, Role, is_joint_state, name_guess};
 use super::segment::stepping_segment;
 use super::unused::{say_file, say_unused};
-use super::values::{angle_unit, counts, duty_unit, median, range, speed_fit};
+use super::values::{angle_unit, counts_beside, counts_of, duty_unit, median, range, speed_fit};
 use crate::error::{Error, Place, Result};
 use crate::log::{LogReason, RawLog};
 use crate::model::Unit;
@@ -109,8 +109,7 @@ impl GuessReader<'_> {
     fn column(&self, index: usize, unit: (&'static str, Option<f64>)) -> ColumnGuess {
         let mut scale = unit.1;
         if unit.0 == "ticks" && scale.is_none() {
-            let highest = range(&self.log.columns[index]).map_or(0.0, |(_, high)| high);
-            scale = Some(counts(highest));
+            scale = Some(self.counts_per_turn(index));
         }
         ColumnGuess {
             index,
@@ -120,6 +119,22 @@ impl GuessReader<'_> {
             reversed: false,
             offset_rad: 0.0,
         }
+    }
+
+    /// Counts per turn of a column of counts: as its joint's goals say, if they are angles, else as
+    /// far as it reaches.
+    fn counts_per_turn(&self, index: usize) -> f64 {
+        let values = &self.log.columns[index];
+        let goal = self
+            .of_joint(&self.names[index].joint, Role::GoalPosition)
+            .and_then(|goal| {
+                let unit = self.names[goal].unit.filter(|(name, _)| *name != "ticks")?;
+                let unit = Unit::named(unit.0, unit.1)?;
+                let goals = self.log.columns[goal].iter();
+                Some(goals.map(|value| unit.to_si(*value)).collect::<Vec<f64>>())
+            });
+        let beside = goal.and_then(|goal_rad| counts_beside(values, &goal_rad));
+        beside.unwrap_or_else(|| counts_of(values))
     }
 
     /// The column in its name's unit if that measures the right thing, else in the one guessed.

@@ -62,6 +62,34 @@ pub fn counts(highest: f64) -> f64 {
     reach.unwrap_or(COUNTS[COUNTS.len() - 1])
 }
 
+/// Counts per turn of an angle whose name says that it counts: of counts below zero, which leave
+/// the first turn, the range says nothing, and most servos that write such have 4096.
+pub fn counts_of(values: &[f64]) -> f64 {
+    let (low, high) = range(values).unwrap_or((0.0, 0.0));
+    if low < 0.0 {
+        counts(high.max(-low)).max(4096.0)
+    } else {
+        counts(high)
+    }
+}
+
+/// Counts per turn of the common encoder with which an angle moves most nearly as far as its goals
+/// do, rad; none where either stands still.
+pub fn counts_beside(angle: &[f64], goal_rad: &[f64]) -> Option<f64> {
+    let spread = |values: &[f64]| {
+        let known = || values.iter().filter(|value| value.is_finite());
+        let middle = known().sum::<f64>() / known().count() as f64;
+        let squares: f64 = known().map(|value| (value - middle).powi(2)).sum();
+        (squares / known().count() as f64).sqrt()
+    };
+    let per_turn = TAU * spread(angle) / spread(goal_rad);
+    let away = |counts: &f64| (counts / per_turn).ln().abs();
+    let nearest = COUNTS
+        .into_iter()
+        .min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.filter(|_| per_turn.is_finite() && per_turn > 0.0)
+}
+
 /// Full scales of duties that are counts: timers and registers of servos.
 const FULL_SCALES: [f64; 7] = [255.0, 885.0, 1000.0, 1023.0, 4095.0, 32767.0, 65535.0];
 
