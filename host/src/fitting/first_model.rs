@@ -41,6 +41,9 @@ const CLEARLY: f64 = 0.7;
 const TOLD: f64 = 3.0;
 /// Friction is shown where its interval reaches less than so many times its size, and not to zero.
 const SHOWN: f64 = 0.9;
+/// Friction without which the error is so many times as large is there, whatever its interval: beside
+/// what the model lacks intervals are wide.
+const NEEDED: f64 = 1.05;
 /// Levers that are shortened, in all.
 const LEVERS: usize = 6;
 /// Least inertia about a link's own centre of mass, over that of its mass there about the joint.
@@ -139,7 +142,7 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
         };
         draft.note(
             "scale",
-            "all torques and inertias go with the first link's mass",
+            "all torques and inertias go with the last link's mass",
             why,
         );
     }
@@ -339,9 +342,9 @@ impl Settling<'_> {
                 forget(&mut model, &path, self.drafted);
                 continue;
             };
-            if let Some(index) = self.untold_friction(&found, &free, &intervals) {
-                model = found.model;
-                forget(&mut model, &free.remove(index), self.drafted);
+            if let Some((index, without)) = self.untold_friction(&found, &free, &intervals) {
+                free.remove(index);
+                model = without;
                 continue;
             }
             if let Some(index) = self.strange(&found, &free) {
@@ -393,25 +396,34 @@ impl Settling<'_> {
         link.inertia_kg_m2 = about_joint_kg_m2 - link.mass_kg * link.com_m * link.com_m;
     }
 
-    /// Friction of which the log does not show that there is some; the least certain first.
+    /// Friction of which the log does not show that there is some, with the model without it: what
+    /// lies on its bound, else the least certain without which the error hardly rises.
     fn untold_friction(
         &self,
         found: &Fit,
         free: &[ParameterPath],
         intervals: &[Interval],
-    ) -> Option<usize> {
+    ) -> Option<(usize, Model)> {
         let on_bound = found.on_bound();
-        let reach = |index: usize| {
-            if on_bound[index] {
-                f64::INFINITY
-            } else {
-                reach(found, intervals, index)
-            }
-        };
         let friction = (0..free.len())
             .filter(|index| matches!(free[*index], ParameterPath::Effect { .. }))
-            .filter(|index| !(reach(*index) <= SHOWN));
-        friction.max_by(|a, b| reach(*a).total_cmp(&reach(*b)))
+            .filter(|index| on_bound[*index] || reach(found, intervals, *index) > SHOWN);
+        let mut untold: Vec<usize> = friction.collect();
+        let certainty = |index: &usize| match on_bound[*index] {
+            true => f64::INFINITY,
+            false => reach(found, intervals, *index),
+        };
+        untold.sort_by(|a, b| certainty(b).total_cmp(&certainty(a)));
+        untold.into_iter().find_map(|index| {
+            let mut without = found.model.clone();
+            forget(&mut without, &free[index], self.drafted);
+            let mut rest = free.to_vec();
+            rest.remove(index);
+            let options = FitOptions::iterations(ON);
+            let refitted = fit(&without, &rest, self.data, None, options);
+            let is_needed = refitted.rms(self.data) > NEEDED * found.rms(self.data);
+            (on_bound[index] || !is_needed).then_some((index, refitted.model))
+        })
     }
 
     /// A value that no bench has, or that fled to its bound.

@@ -67,14 +67,16 @@ fn fastest_rad_s(motions: &[Motion], joint: usize) -> f64 {
 }
 
 /// What a fit may change, the most important first. All torques of a rig scale together, so its
-/// scale stays where the draft has it: a torque drive's input states it, else the first mass does.
+/// scale stays where the draft has it: a torque drive's input states it, else the last mass does,
+/// which all joints before it carry.
 pub(super) fn free_of(model: &Model, draft: &Draft) -> Vec<ParameterPath> {
     let links = model.link_count();
     let drive = |index: usize| model.joints[index].drive.name();
     let joint = |index: usize, field: JointField| ParameterPath::Joint { index, field };
     let link = |index: usize, field: LinkField| ParameterPath::Link { index, field };
     let in_newton_metres = (0..links).any(|index| drive(index) == "torque");
-    let mass_is_open = |index: usize| !draft.is_known("mass") && (index > 0 || in_newton_metres);
+    let mass_is_open =
+        |index: usize| !draft.is_known("mass") && (index + 1 < links || in_newton_metres);
     let mut free = Vec::new();
     for index in 0..links {
         match drive(index) {
