@@ -362,6 +362,26 @@ mod tests {
     }
 
     #[test]
+    fn goals_tell_the_counts_of_a_turn_and_counts_below_zero_no_first_turn() {
+        let goal_rad: Vec<f64> = (0..400)
+            .map(|k| 0.9 * (0.05 * f64::from(k)).sin())
+            .collect();
+        // A servo follows by nine tenths, around its middle.
+        let counts = |per_turn: f64| -> Vec<f64> {
+            let angle = goal_rad.iter().map(|goal| 0.9 * goal * per_turn / TAU);
+            angle.map(|counts| (counts + 30.0).round()).collect()
+        };
+        for per_turn in [1024.0, 4096.0, 16384.0] {
+            assert_eq!(counts_beside(&counts(per_turn), &goal_rad), Some(per_turn));
+        }
+        assert_eq!(counts_beside(&counts(4096.0), &[0.3; 400]), None);
+        assert_eq!(counts_beside(&[7.0; 400], &goal_rad), None);
+        assert_eq!(counts_of(&[12.0, 900.0]), 1024.0);
+        assert_eq!(counts_of(&[-300.0, 500.0]), 4096.0);
+        assert_eq!(counts_of(&[-300.0, 9000.0]), 16384.0);
+    }
+
+    #[test]
     fn units_come_from_ranges() {
         assert_eq!(time_unit(&[0.0, 10.0, 20.0]), "ms");
         assert_eq!(time_unit(&[0.0, 1e4, 2e4]), "us");
