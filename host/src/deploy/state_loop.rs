@@ -27,9 +27,9 @@ pub fn state_radius(model: &Model, design: &Design, basis: &PlanBasis) -> Result
     let share = f64::from(VELOCITY.share) / 256.0;
     let k = fixed.law.gain();
     // Readings are the angles and the first link's rate; the gains' columns are angles and speeds.
-    let of_readings = k.columns(0, JOINTS + 1);
-    let of_speeds = k.columns(JOINTS + 1, INPUTS);
-    let joints = plant.c.rows(1, INPUTS);
+    let of_readings = k.columns(0, JOINTS + 1).into_owned();
+    let of_speeds = k.columns(JOINTS + 1, INPUTS).into_owned();
+    let joints = plant.c.rows(1, INPUTS).into_owned();
     let per_s = share / basis.board.period_s;
     // A speed is what is left of the last one, and a share of the newest difference.
     let newest = &joints * per_s;
@@ -39,7 +39,6 @@ pub fn state_radius(model: &Model, design: &Design, basis: &PlanBasis) -> Result
     let (b, none) = (&plant.b, DMatrix::zeros(INPUTS, INPUTS));
     let same = DMatrix::identity(INPUTS, INPUTS);
     let (left, before) = (&same * (1.0 - share), &same * -per_s);
-    let joints = joints.into_owned();
     let closed = stack![
         &plant.a - b * &by_state, -(b * &by_before), -(b * &by_speed);
         joints, none.clone(), none;

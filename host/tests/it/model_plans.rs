@@ -61,6 +61,7 @@ fn a_robot_with_one_effect_of_its_drives_stands_by_the_plan_of_its_model() {
         ("coulomb", "2", "torque_nm = 0.2"),
         ("torque_saturation", "\"all\"", "limit_nm = 1.0"),
         ("backlash", "2", "gap_rad = 0.03"),
+        ("sensor_lag", "2", "time_constant_s = 0.02"),
         ("torque_scale", "\"all\"", "factor = 0.7"),
     ] {
         bench.put("m.toml", robot(&[effect]));
@@ -89,7 +90,7 @@ fn deploy_says_what_balance_then_does() {
         (&[late, heavy][..], true),
         (&[heavy], true),
         (&[bar], false),
-        (&[lag], false),
+        (&[lag], true),
         (&[far], false),
         (&[weak], false),
     ] {

@@ -23,6 +23,9 @@ const MARGIN: f64 = 1.21;
 /// Left of the periods that the CM-5 keeps inputs of, s: so much rounding may take.
 const SPARE_S: f64 = 1e-4;
 
+/// Shorter filters are lost in the period, and the state before them is hardly to be computed, s.
+const LEAST_LAG_S: f64 = 2e-3;
+
 /// What is told of the drives beside the model, and goes before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToldDrives {
@@ -143,17 +146,23 @@ impl PlanBasis {
         let late_s = losses.map(|loss| told.delay_s.unwrap_or(loss.delay_s));
         timing.drive_delay_s = late_s.map(|late_s| late_s.clamp(0.0, room_s));
         let latest_s = timing.latest_effect_s();
-        let mut aged_s = [0.0; INPUTS];
-        for (place, loss) in losses.iter().enumerate() {
+        let mut aged_s = losses.map(|loss| loss.sensor_lag_s);
+        let own_state = aged_s.map(|lag_s| timing.lag_s <= 0.0 && lag_s >= LEAST_LAG_S);
+        for (place, aged_s) in aged_s.iter_mut().enumerate() {
+            if own_state[place] {
+                timing.sensor_lag_s[place] = *aged_s;
+                continue;
+            }
             let age_s = &mut timing.age_s[1 + place];
-            aged_s[place] = loss.sensor_lag_s.min(kept_s - latest_s - *age_s);
-            *age_s += aged_s[place];
+            *aged_s = aged_s.min(kept_s - latest_s - *age_s);
+            *age_s += *aged_s;
         }
         let taken = uses::Taken {
             told,
             late_s,
             taken_s: timing.drive_delay_s,
             aged_s,
+            own_state,
         };
         Ok(PlanBasis {
             uses: uses::of(model, &board, &taken)?,

@@ -58,6 +58,9 @@ pub(super) struct Taken<'a> {
     pub taken_s: [f64; INPUTS],
     /// What the observer takes of each joint's sensor lag, s.
     pub aged_s: [f64; INPUTS],
+    /// Whether the observer has a state for it; else, short or beside a lag of the torques, it is an
+    /// age.
+    pub own_state: [bool; INPUTS],
 }
 
 /// What became of the drives' figures, then of each effect.
@@ -102,7 +105,7 @@ fn used(
     let (told, value) = (taken.told, instance.values.first().copied().unwrap_or(0.0));
     let (to, how) = match (info.id, place) {
         ("delay", Some(place)) => (UsePlace::Observer, late(taken, place)),
-        ("sensor_lag", Some(place)) => (UsePlace::Observer, aged(value, taken.aged_s[place])),
+        ("sensor_lag", Some(place)) => (UsePlace::Observer, aged(value, taken, place)),
         ("dead_zone" | "coulomb", Some(place)) => (
             UsePlace::Compensation,
             jumped(board, place, told.dead_zone.is_some()),
@@ -145,8 +148,12 @@ fn late(taken: &Taken, place: usize) -> String {
     part(taken.late_s[place], taken.taken_s[place], whose)
 }
 
-fn aged(all_s: f64, taken_s: f64) -> String {
-    part(all_s, taken_s, "as the age of a reading")
+fn aged(all_s: f64, taken: &Taken, place: usize) -> String {
+    let how = match taken.own_state[place] {
+        true => "a filter's state",
+        false => "as the age of a reading",
+    };
+    part(all_s, taken.aged_s[place], how)
 }
 
 fn part(all_s: f64, taken_s: f64, how: &str) -> String {

@@ -13,6 +13,9 @@ pub struct BoardTiming {
     pub drive_delay_s: [f64; INPUTS],
     /// Time constant with which a servo's torque follows its input, s; 0: at once.
     pub lag_s: f64,
+    /// Time constant of the filter that the encoder of each driven joint is read through, s; 0: none.
+    /// Only where torques follow at once: else the states it takes are the torques'.
+    pub sensor_lag_s: [f64; INPUTS],
     /// Age of each reading at the law's moment, s: the angles, then the first link's rate.
     pub age_s: [f64; READINGS],
     /// Standard deviation of each reading, in SI; infinite for one that there is not. Without the
@@ -37,6 +40,7 @@ impl BoardTiming {
         effect_s: 0.9e-3,
         drive_delay_s: [0.0; INPUTS],
         lag_s: 0.0,
+        sensor_lag_s: [0.0; INPUTS],
         age_s: [8.2e-3, 0.4e-3, 0.2e-3, 8.2e-3],
         deviation: [
             EXACT_RAD,
@@ -78,6 +82,11 @@ impl BoardTiming {
     /// The same of the latest.
     pub fn latest_effect_s(&self) -> f64 {
         self.effects_s().into_iter().fold(0.0, f64::max)
+    }
+
+    /// Whether the reading of a driven joint is a filter's, which has a state of its own.
+    pub(super) fn is_filtered(&self, place: usize) -> bool {
+        self.lag_s <= 0.0 && self.sensor_lag_s[place] > 0.0
     }
 
     /// Whether nothing measures the first link's angle.

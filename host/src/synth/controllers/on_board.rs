@@ -165,6 +165,14 @@ fn lagging(known: &DesignModel, timing: &BoardTiming) -> Continuous {
             b[(drive, drive - TORQUES)] = 1.0 / timing.lag_s;
         }
     }
+    for (place, &joint) in known.driven.iter().enumerate() {
+        if timing.is_filtered(place) {
+            // The state of a torque that follows at once is free: T f' + f = angle.
+            let per_s = 1.0 / timing.sensor_lag_s[place];
+            a[(TORQUES + place, TORQUES + place)] = -per_s;
+            a[(TORQUES + place, joint)] = per_s;
+        }
+    }
     Continuous {
         a,
         b,
@@ -272,7 +280,7 @@ fn outputs(known: &DesignModel, timing: &BoardTiming, wide: &Continuous) -> Resu
     for (reading, age_s) in timing.age_s.into_iter().enumerate() {
         for (input, effect_s) in timing.effects_s().into_iter().enumerate() {
             let ago = ago(known, wide, effect_s, age_s)?;
-            let row = ago.row(reading);
+            let row = ago.row(read_state(known, timing, reading));
             if input == 0 {
                 c.row_mut(reading).copy_from(&row);
             }
@@ -286,6 +294,15 @@ fn outputs(known: &DesignModel, timing: &BoardTiming, wide: &Continuous) -> Resu
         c[(JOINTS, GYRO_OFFSET)] += 1.0;
     }
     Ok(c)
+}
+
+/// The state that a reading tells: that of the filter which it comes through, else the joint's own.
+fn read_state(known: &DesignModel, timing: &BoardTiming, reading: usize) -> usize {
+    let place = known.driven.iter().position(|joint| *joint == reading);
+    match place.filter(|place| timing.is_filtered(*place)) {
+        Some(place) => TORQUES + place,
+        None => reading,
+    }
 }
 
 /// The state [x, offsets, torques] `age_s` ago as a linear function of that and past inputs now.
