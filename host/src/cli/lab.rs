@@ -85,7 +85,8 @@ impl LabRobotArgs {
             port: name.clone(),
             ids: self.ids.0.clone(),
             board: self.board.board()?,
-            timing: self.board.timing()?,
+            timing: self.board.timing(),
+            told: self.board.told()?,
             open: Arc::new(move || port.open_with_attitude()),
         }))
     }

@@ -4,15 +4,19 @@
 //! itself; samples each and closes the loop with a gain made for the model: the paper's (Q = 100 I
 //! and Q = I, R = I), and one made for the model and the corners of its mass errors at once.
 //! Unstable is a robot whose loop has a spectral radius not below 1. The design sees no draw, so
-//! every seed is fresh.
+//! every seed is fresh. Drives are as late as the model has them, and the gains made for it know.
+//!
+//! `--plan FILE` judges gains of your own: what `handstand gains --json` printed.
 //!
 //! ```console
 //! $ handstand robust handstand.toml
 //! ```
 //!
-//! Exit code 1 when the multi-model gain leaves more than 2 % unstable. `--json` prints a list of
+//! Exit code 1 when the multi-model gain, or with `--plan` yours, leaves more than 2 % unstable. `--json` prints a list of
 //! `gain`, `unstable`, `median_radius`, `worst_radius`, `largest_error` (at which 2 % are unstable)
 //! and `k`, by rows.
+
+mod plan;
 
 use super::{ExitStatus, Talk, input, show};
 use handstand::output::number::exact;
@@ -33,6 +37,9 @@ const UNSTABLE: f64 = 0.02;
 pub struct RobustArgs {
     /// Model file
     model: PathBuf,
+    /// Judge these gains too: what `handstand gains MODEL --json` printed
+    #[arg(long, value_name = "FILE.json")]
+    plan: Option<PathBuf>,
     /// Largest error of each mass, %
     #[arg(long, value_name = "PERCENT", default_value_t = 10.0, value_parser = input::positive)]
     masses: f64,
@@ -81,9 +88,12 @@ pub fn run(args: &RobustArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     let gains = judged(args, &Model::load(&args.model)?, talk)?;
     talk.result(&gains, || text(args, &gains))?;
-    let last = gains.last();
+    let judged = match args.plan {
+        Some(_) => gains.first(),
+        None => gains.last(),
+    };
     Ok(ExitStatus::answer(
-        last.is_some_and(|gain| gain.unstable <= UNSTABLE),
+        judged.is_some_and(|gain| gain.unstable <= UNSTABLE),
     ))
 }
 
@@ -95,11 +105,11 @@ fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobus
         draws: args.draws as usize,
         seed: args.seed,
     };
-    let bar = talk.bar(4);
+    let bar = talk.bar(4 + u64::from(args.plan.is_some()));
     bar.set_message("drawing robots");
     let plants = errors.plants(args.masses / 100.0)?;
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;
-    let sampled = zoh(&nominal.plant, args.ts, 0.0)?;
+    let sampled = zoh(&nominal.plant, args.ts, nominal.delay_s)?;
     let regulator = |q: f64| {
         let own = nominal.clone();
         let (q, r) = DesignModel { q, ..own }.weights();
@@ -111,11 +121,14 @@ fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobus
         weight: args.q,
     };
     let title = format!("multi-model, {} % of each mass", exact(args.design));
-    let gains = [
+    let mut gains = vec![
         ("DLQR, Q = 100 I, R = I".to_string(), regulator(100.0)?),
         ("DLQR, Q = I, R = I".to_string(), regulator(1.0)?),
-        (title, multi.gain(&nominal)?),
+        (title, multi.gain(&nominal, nominal.delay_s)?),
     ];
+    if let Some(file) = &args.plan {
+        gains.insert(0, (file.display().to_string(), plan::gain(file, &sampled)?));
+    }
     bar.inc(1);
     let judge = |(gain, k): (String, DMatrix<f64>)| {
         bar.set_message(gain.clone());

@@ -29,14 +29,14 @@ pub struct Board {
     pub period_s: f64,
     /// Shoulder and hip.
     pub servos: [ServoPair; INPUTS],
-    /// Torque of a joint at full output, N m.
-    pub full_nm: f64,
-    /// Largest torque commanded, N m.
-    pub most_nm: f64,
-    /// Share of full output below which a servo does not move.
-    pub dead_zone: f64,
-    /// Whether torque starts at zero beyond the dead zone; else a command that passes acts whole.
-    pub starts_at_zero: bool,
+    /// Torque of each joint at full output, N m.
+    pub full_nm: [f64; INPUTS],
+    /// Largest torque commanded to each joint, N m.
+    pub most_nm: [f64; INPUTS],
+    /// Share of full output that each joint's servos lose of every command: jumped over.
+    pub dead_zone: [f64; INPUTS],
+    /// Torque of each joint below which a command does nothing, though it acts whole beyond, N m.
+    pub least_nm: [f64; INPUTS],
     /// Largest change of a torque in a period, N m.
     pub slew_nm: f64,
     /// Where the first link's attitude comes from.
@@ -68,10 +68,10 @@ impl Board {
                 centre: Position::CENTRE.0,
             },
         ],
-        full_nm: 2.0,
-        most_nm: 2.0,
-        dead_zone: 0.08,
-        starts_at_zero: true,
+        full_nm: [2.0; INPUTS],
+        most_nm: [2.0; INPUTS],
+        dead_zone: [0.08; INPUTS],
+        least_nm: [0.0; INPUTS],
         slew_nm: 1.0,
         gyro: Gyro {
             from_host: true,
@@ -79,8 +79,8 @@ impl Board {
             scale: 16,
         },
         range_rad: 0.8,
-        joint_range_rad: 1.2,
-        joint_speed_rad_s: 6.0,
+        joint_range_rad: 1.5,
+        joint_speed_rad_s: 12.0,
     };
 }
 
@@ -119,22 +119,17 @@ impl Board {
     fn joint(&self, place: usize, input_step_nm: f64) -> Result<Joint> {
         let servo = self.servos[place];
         let steps = |torque_nm: f64| (torque_nm / input_step_nm).round().min(WORD) as i16;
-        let codes = (self.dead_zone * 1023.0).round() as u16;
-        // Behind the dead zone the rest of the range makes the whole torque, or torque is
-        // proportional to the command.
-        let (dead, least, span) = match self.starts_at_zero {
-            true => (codes, 0, 1023 - codes),
-            false => (0, steps(MARGIN * self.dead_zone * self.full_nm), 1023),
-        };
+        // Behind the dead zone the rest of the range makes the whole torque.
+        let dead = (self.dead_zone[place] * 1023.0).round() as u16;
+        let (full_nm, span) = (self.full_nm[place], 1023 - dead);
         let range = (self.joint_range_rad / Position::LSB_RAD).floor() as i16;
         let fastest = self.joint_speed_rad_s * self.period_s / Position::LSB_RAD;
-        let gain = (input_step_nm / self.full_nm * f64::from(span) * 65_536.0).round();
+        let gain = (input_step_nm / full_nm * f64::from(span) * 65_536.0).round();
         if !(1.0..=65_535.0).contains(&gain) {
             return Err(Error::design(
                 format!(
-                    "a torque step of {input_step_nm} N m and a full torque of {} N m make {gain} \
-                     / 65536 codes a step",
-                    self.full_nm
+                    "a torque step of {input_step_nm} N m and a full torque of {full_nm} N m make \
+                     {gain} / 65536 codes a step"
                 ),
                 "that has to be 1 to 65535: give another step or another full torque",
             ));
@@ -146,8 +141,8 @@ impl Board {
             centre: servo.centre,
             dead,
             gain: gain as u16,
-            least,
-            most: steps(self.most_nm),
+            least: steps(self.least_nm[place]),
+            most: steps(self.most_nm[place]),
             slew: steps(self.slew_nm),
             lowest: -range,
             highest: range,
@@ -155,10 +150,6 @@ impl Board {
         })
     }
 }
-
-/// A command this many times the nominal dead zone passes every robot's own, which may differ by a
-/// fifth.
-const MARGIN: f64 = 1.21;
 
 /// Each link's moment with all that hangs on its end, in 1/16384 of the largest.
 pub(super) fn moments(model: &Model) -> [Moment; JOINTS] {

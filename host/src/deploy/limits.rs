@@ -55,8 +55,10 @@ pub fn mode_limits(model: &Model, board: &Board, timing: &BoardTiming) -> Result
         let Some(w) = left_eigenvector(a, p) else {
             continue;
         };
-        let reach: f64 = (b.transpose() * &w).iter().map(|part| part.abs()).sum();
-        let recoverable = board.most_nm * reach / (p * (1.0 + p * timing.lag_s));
+        let pulls = b.transpose() * &w;
+        let pulls = pulls.iter().zip(board.most_nm);
+        let reach_nm: f64 = pulls.map(|(part, most_nm)| part.abs() * most_nm).sum();
+        let recoverable = reach_nm / (p * (1.0 + p * timing.lag_s));
         let off = |steps: &[f64]| -> f64 {
             let parts = w.iter().zip(steps).map(|(w, step)| (w * step).abs());
             parts.sum()
@@ -65,7 +67,7 @@ pub fn mode_limits(model: &Model, board: &Board, timing: &BoardTiming) -> Result
         let oldest_s = (timing.age_s.iter().zip(&timing.deviation))
             .filter(|(_, deviation)| deviation.is_finite())
             .fold(0.0, |oldest: f64, (age, _)| oldest.max(*age));
-        let answer_s = oldest_s + board.period_s + timing.effect_s;
+        let answer_s = oldest_s + board.period_s + timing.latest_effect_s();
         let growth = (p * answer_s).exp();
         limits.push(ModeLimit {
             pole_per_s: p,
@@ -132,7 +134,7 @@ mod tests {
         let at_once = limits(&BoardTiming::HOST_ATTITUDE, &Board::BIOLOID);
         let lagging = BoardTiming::HOST_ATTITUDE.with_lag(0.034);
         let weaker = Board {
-            most_nm: 1.0,
+            most_nm: [1.0; 2],
             ..Board::BIOLOID
         };
         for (mode, late) in at_once.iter().zip(limits(&lagging, &Board::BIOLOID)) {

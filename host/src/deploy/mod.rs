@@ -5,20 +5,26 @@
 //! firmware's law with wide integers.
 
 pub mod balance;
+mod basis;
 mod board;
 mod limits;
 mod observer;
+#[cfg(feature = "virtual-cm5")]
+pub mod rehearsal;
 mod replay;
 mod rust_file;
 mod state;
+mod state_loop;
 mod transfer;
 
+pub use basis::{EffectUse, PlanBasis, ToldDrives, UsePlace};
 pub use board::{Board, ServoPair};
 pub use limits::{ModeLimit, mode_limits};
 pub use observer::{reading_steps, state_steps};
 pub use replay::replay;
 pub use rust_file::{plan_file, plan_of_file};
 pub use state::state_design;
+pub use state_loop::state_radius;
 pub use transfer::{read_back, upload, verify};
 
 use crate::error::Result;
@@ -49,7 +55,7 @@ pub fn observer_design(model: &Model, board: &Board, timing: &BoardTiming) -> Re
 fn observer_known(model: &Model, board: &Board) -> Result<DesignModel> {
     state::relative(model)?;
     Ok(DesignModel {
-        limit_nm: board.most_nm,
+        limit_nm: board.most_nm.into_iter().fold(f64::INFINITY, f64::min),
         ..DesignModel::new(model, &upright(model), board.period_s)?
     })
 }

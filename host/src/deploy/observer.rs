@@ -54,16 +54,26 @@ pub fn reading_steps() -> [f64; READINGS] {
 ///
 /// # Errors
 /// Gains that overflow their words.
-pub(super) fn quantised(machine: &OnBoard, limit_nm: f64) -> Result<Observer> {
+pub(super) fn quantised(machine: &OnBoard, limit_nm: [f64; INPUTS]) -> Result<Observer> {
     let step = state_steps();
     let feedback = rounded(
         &machine.feedback,
         &step[..SEEN],
         &[INPUT_STEP_NM; INPUTS],
-        limit_nm / INPUT_STEP_NM,
+        &limit_nm.map(|limit_nm| limit_nm / INPUT_STEP_NM),
     )?;
-    let update = rounded(&machine.update, &step, &step[..ESTIMATED], WORD)?;
-    let predict = rounded(&machine.predict, &step[..STATE], &step[STATE..SEEN], WORD)?;
+    let update = rounded(
+        &machine.update,
+        &step,
+        &step[..ESTIMATED],
+        &[WORD; ESTIMATED],
+    )?;
+    let predict = rounded(
+        &machine.predict,
+        &step[..STATE],
+        &step[STATE..SEEN],
+        &[WORD; READINGS],
+    )?;
     Ok(Observer {
         predict: table(&predict)?,
         feedback: table(&feedback)?,
@@ -73,16 +83,20 @@ pub(super) fn quantised(machine: &OnBoard, limit_nm: f64) -> Result<Observer> {
     })
 }
 
-/// Rows of `matrix` in fixed point; outputs saturate at `most` steps.
+/// Rows of `matrix` in fixed point; outputs saturate at so many steps.
 fn rounded(
     matrix: &DMatrix<f64>,
     from_step: &[f64],
     to_step: &[f64],
-    most: f64,
+    most: &[f64],
 ) -> Result<Vec<u8>> {
     let ranges = Ranges {
         state: from_step.iter().map(|step| step * WORD).collect(),
-        input: to_step.iter().map(|step| step * most).collect(),
+        input: to_step
+            .iter()
+            .zip(most)
+            .map(|(step, most)| step * most)
+            .collect(),
     };
     let format = Format {
         state_step: Some(from_step.to_vec()),

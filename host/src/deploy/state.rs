@@ -15,7 +15,7 @@ use handstand_shared::velocity::Velocity;
 const STATES: usize = 2 * JOINTS;
 
 /// Speeds as the firmware estimates them: differences of positions, smoothed over two ticks.
-const VELOCITY: Velocity = Velocity {
+pub(super) const VELOCITY: Velocity = Velocity {
     fraction: 4,
     share: 128,
 };
@@ -88,8 +88,12 @@ fn measured_steps(period_s: f64) -> Vec<f64> {
 fn finer_step_nm(design: &Design, board: &Board) -> Option<f64> {
     let law = &design.fixed.as_ref()?.law;
     // A plan holds commands per step in 16 bits behind the point.
-    let codes = 1023.0 - (board.dead_zone * 1023.0).round();
-    let most_nm = board.full_nm / codes * 65_535.0 / 65_536.0;
+    let drives = board.full_nm.iter().zip(board.dead_zone);
+    let most_nm = drives.map(|(full_nm, dead_zone)| {
+        let codes = 1023.0 - (dead_zone * 1023.0).round();
+        full_nm / codes * 65_535.0 / 65_536.0
+    });
+    let most_nm = most_nm.fold(f64::INFINITY, f64::min);
     let is_coarse = law.input_step.iter().any(|step| *step > most_nm);
     is_coarse.then(|| 2f64.powi(most_nm.log2().floor() as i32))
 }

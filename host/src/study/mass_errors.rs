@@ -22,7 +22,8 @@ pub struct MassErrors<'a> {
 }
 
 impl MassErrors<'_> {
-    /// The plants, each link's mass within `share` of the model's, by itself.
+    /// The plants, each link's mass within `share` of the model's, by itself; their inputs are as late
+    /// as the model's drives.
     ///
     /// # Errors
     /// Robots that cannot be linearised.
@@ -38,7 +39,7 @@ impl MassErrors<'_> {
                 }
                 let period_s = case.clock.period_s;
                 let model = DesignModel::new(&case.robot, &upright(&case.robot), period_s)?;
-                Ok(zoh(&model.plant, period_s, 0.0)?)
+                Ok(zoh(&model.plant, period_s, model.delay_s)?)
             })
             .collect()
     }

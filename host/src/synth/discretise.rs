@@ -16,6 +16,35 @@ const WHOLE: f64 = 1e-9;
 /// Most past inputs kept.
 const MOST_DELAYED: usize = 100;
 
+/// The same with each input as late as its own entry of `delays_s` says; as many past inputs are
+/// kept of each as the latest needs.
+///
+/// # Errors
+/// As [`zoh`].
+pub fn zoh_each(plant: &Continuous, ts_s: f64, delays_s: &[f64]) -> Result<Discrete, DesignError> {
+    let (n, m) = (plant.a.nrows(), plant.b.ncols());
+    let latest_s = delays_s
+        .iter()
+        .fold(0.0, |most: f64, delay| most.max(*delay));
+    let mut sampled = zoh(plant, ts_s, latest_s)?;
+    // Inputs add up: each has the columns that it has where all are as late as it is.
+    for (input, delay_s) in delays_s.iter().enumerate().take(m) {
+        let own = zoh(plant, ts_s, *delay_s)?;
+        for past in 0..sampled.delayed_inputs {
+            let place = n + m * past + input;
+            let mut column = sampled.a.view_mut((0, place), (n, 1));
+            if past < own.delayed_inputs {
+                column.copy_from(&own.a.view((0, place), (n, 1)));
+            } else {
+                column.fill(0.0);
+            }
+        }
+        let direct = own.b.view((0, input), (n, 1));
+        sampled.b.view_mut((0, input), (n, 1)).copy_from(&direct);
+    }
+    Ok(sampled)
+}
+
 /// The plant sampled every `ts_s`, its inputs held between samples and `delay_s` late.
 ///
 /// # Errors
@@ -105,6 +134,34 @@ mod tests {
             a: DMatrix::from_row_slice(2, 2, &values[..4]),
             b: DMatrix::from_row_slice(2, 1, &values[4..6]),
             c: DMatrix::identity(2, 2),
+        }
+    }
+
+    /// Two inputs of which each is late by itself move the plant as the sum of what either does.
+    #[test]
+    fn inputs_are_late_each_by_itself() {
+        let plant = Continuous {
+            a: DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 30.0, -0.5]),
+            b: DMatrix::from_row_slice(2, 2, &[0.1, 0.0, 2.0, -3.0]),
+            c: DMatrix::identity(2, 2),
+        };
+        for delays_s in [[0.003, 0.014], [0.021, 0.0], [0.01, 0.01]] {
+            let own = delays_s.map(|delay_s| zoh(&plant, 0.01, delay_s).unwrap());
+            let both = zoh_each(&plant, 0.01, &delays_s).unwrap();
+            let at_rest = |sampled: &Discrete| DMatrix::zeros(sampled.a.nrows(), 1);
+            let mut sum = at_rest(&both);
+            let mut alone = [at_rest(&own[0]), at_rest(&own[1])];
+            for k in 0..12 {
+                let u = [f64::from(k).sin(), f64::from(k * k).cos()];
+                sum = &both.a * &sum + &both.b * DMatrix::from_row_slice(2, 1, &u);
+                for input in 0..2 {
+                    let mut only = DMatrix::zeros(2, 1);
+                    only[input] = u[input];
+                    alone[input] = &own[input].a * &alone[input] + &own[input].b * only;
+                }
+                let parts = alone[0].rows(0, 2) + alone[1].rows(0, 2);
+                assert!((sum.rows(0, 2) - parts).amax() < 1e-12, "{delays_s:?} {k}");
+            }
         }
     }
 

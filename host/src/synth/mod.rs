@@ -35,7 +35,7 @@ mod zeros;
 pub use crate::model::upright;
 pub use controllability::{Controllability, controllability, observability};
 pub use design::{Design, Estimation, Fixed};
-pub use discretise::zoh;
+pub use discretise::{zoh, zoh_each};
 pub use eigen::{Mode, poles};
 pub use error::{DesignError, PlantMode, RiccatiRole};
 pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};

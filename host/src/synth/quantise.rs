@@ -3,8 +3,9 @@
 //! With k = K (state step) 2^shift / (input step), a row of gains only knows the scale 2^shift /
 //! (input step). It is made as large as gains and sum allow: every gain fits a word, and sum |k|
 //! 2^(bits-1) + |bias| < 2^(2 bits-1), so that no states whatever overflow the sum. The shift is
-//! then as many whole bytes as the input's range needs: an 8-bit machine shifts by bytes for
-//! nothing.
+//! then the least that lets the input reach its range, for each place more makes a step of the input
+//! twice as coarse. Whole bytes would save an 8-bit machine next to nothing (docs/measured/bench-firmware.md)
+//! and cost up to seven places.
 
 use super::error::DesignError;
 use super::fixed_law::FixedLaw;
@@ -128,7 +129,7 @@ impl GainRow {
         most < word && sum * word + bias < 2.0 * word * word - 1.0
     }
 
-    /// The largest scale that fits, and its split into bytes of shift and a step that the range
+    /// The largest scale that fits, and its split into the least shift and a step that the range
     /// needs.
     fn shift_and_step(&self) -> (u32, f64) {
         let word = largest_word(self.bits);
@@ -142,10 +143,7 @@ impl GainRow {
         }
         let step = |shift: u32| 2f64.powi(shift as i32) / scale;
         let enough = |shift: &u32| step(*shift) >= least_step;
-        let shift = (0..=most_shift)
-            .step_by(8)
-            .find(enough)
-            .unwrap_or(most_shift);
+        let shift = (0..=most_shift).find(enough).unwrap_or(most_shift);
         (shift, step(shift))
     }
 

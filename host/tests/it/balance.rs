@@ -6,10 +6,7 @@ const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml"
 
 /// The robot with ideal servos, held until torque comes on.
 fn line(more: &str, options: &str) -> String {
-    format!(
-        "balance {MODEL} --port sim-cm5:robot={MODEL},start=held{more} --servo-lag 0 --dead-zone 0 --yes --json \
-         {options}"
-    )
+    format!("balance {MODEL} --port sim-cm5:robot={MODEL},start=held{more} --yes --json {options}")
 }
 
 #[test]
@@ -44,11 +41,13 @@ fn a_robot_with_real_servos_stands() {
     let bench = Bench::new();
     let model = MODEL.replace("handstand.toml", "robot_servos.toml");
     let port = format!("--port sim-cm5:robot={model},start=held,lean=-1/1/-1,lag=0.034,delay=0");
-    let options = "--dead-zone 0.08 --yes --json --seconds 10";
-    let ran = bench.run(&format!("balance {model} {port} {options}"));
+    let options = "--yes --json --seconds 10";
+    let ran = bench.run(&format!(
+        "balance {model} {port} {options} --servo-lag 0.034"
+    ));
     assert_eq!(ran.code, Some(0), "{ran:?}");
     // A plan that believes the torque to come at once fells it.
-    let ran = bench.run(&format!("balance {model} {port} {options} --servo-lag 0"));
+    let ran = bench.run(&format!("balance {model} {port} {options}"));
     assert_eq!(ran.code, Some(5), "{ran:?}");
 }
 
@@ -73,9 +72,7 @@ fn a_robot_stands_by_its_gyro_alone() {
 #[test]
 fn a_plan_of_a_file_is_the_model_s() {
     let bench = Bench::new();
-    let header = format!(
-        "gains deploy {MODEL} --servo-lag 0 --dead-zone 0 --dry-run --states 10 --header p.rs"
-    );
+    let header = format!("gains deploy {MODEL} --dry-run --states 10 --header p.rs");
     assert_eq!(bench.run(&header).code, Some(0));
     let port = format!("--port sim-cm5:robot={MODEL},start=held,delay=0 --yes --seconds 1 --json");
     let ran = bench.run(&format!("balance p.rs {port}"));
@@ -240,7 +237,7 @@ mod signals {
         let mut balance = spawn(
             &bench,
             &format!(
-                "balance {MODEL} --port {} --gyro-per-code 0.0174533 --servo-lag 0 --dead-zone 0 --countdown 0 \
+                "balance {MODEL} --port {} --gyro-per-code 0.0174533 --countdown 0 \
                  --yes",
                 port.trim()
             ),

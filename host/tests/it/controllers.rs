@@ -60,6 +60,36 @@ fn wrong_masses_fell_the_paper_s_gains() {
     assert!(data[2]["largest_error"].as_f64().unwrap() > 0.15, "{data}");
 }
 
+/// The gains of `gains --json` as they are: told nothing of the drives' delay they let every robot
+/// fall, told of it they are the DLQR of the table.
+#[test]
+fn robust_has_the_model_s_delay_and_takes_gains_of_a_file() {
+    let bench = bench();
+    let late = "\n[[effect]]\nkind = \"delay\"\njoint = \"all\"\ndelay_s = 0.014\n";
+    bench.put("late.toml", bench.get("handstand.toml") + late);
+    bench.put(
+        "unaware.json",
+        bench.run("gains late.toml --delay 0 --json").stdout,
+    );
+    bench.put("aware.json", bench.run("gains late.toml --json").stdout);
+    let judged = |plan: &str| {
+        bench.run(&format!(
+            "robust late.toml --plan {plan} --draws 100 --json"
+        ))
+    };
+    let unaware = judged("unaware.json");
+    assert_eq!(unaware.code, Some(1), "{unaware:?}");
+    assert_eq!(unaware.json()[0]["unstable"], 1.0, "{unaware:?}");
+    let aware = judged("aware.json").json();
+    assert_eq!(aware[0]["unstable"], aware[1]["unstable"]);
+    assert!(aware[0]["unstable"].as_f64().unwrap() < 1.0, "{aware}");
+    assert!(aware[3]["k"][0].as_array().unwrap().len() > 6, "{aware}");
+    bench.put("arm.json", "{\n\"k\": [[1, 2]]}");
+    let other = judged("arm.json");
+    assert_eq!(other.code, Some(3), "{other:?}");
+    assert!(other.stderr.contains("1 rows of 2"), "{other:?}");
+}
+
 #[test]
 fn one_sample_of_delay_is_too_much_for_the_paper_s_gains() {
     let ran = bench().run(

@@ -8,7 +8,7 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     let bench = Bench::new();
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
     let ran = bench.run(&format!(
-        "gains deploy {model} --law state --port sim-cm5 --states 20000 --rust gains.rs --header plan.rs --tap bytes.txt --json"
+        "gains deploy {model} --law state --unstable --port sim-cm5 --states 20000 --rust gains.rs --header plan.rs --tap bytes.txt --json"
     ));
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();
@@ -43,6 +43,9 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
         ("--q 10", 2, "--law state"),
         ("--law state --state-step 1,1,1,1,1,1", 2, "--state-step"),
         ("--law state --ts 0.02", 3, "ticks every 0.01 s"),
+        ("--law state", 3, "it is unstable"),
+        ("--supply 11.1", 2, "at which supply"),
+        ("--drive-delay 2", 2, "--drive-delay"),
     ] {
         let ran = bench.run(&format!(
             "gains deploy {model} --dry-run --states 10 {option}"
@@ -52,8 +55,12 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     }
     // Another design is another table.
     let other = bench.run(&format!(
-        "deploy {model} --law state --q 1 --dry-run --states 100 --json"
+        "deploy {model} --law state --unstable --q 1 --dry-run --states 100 --json"
     ));
+    // It falls, as its radius says.
+    assert_eq!(other.code, Some(1), "{other:?}");
+    assert_eq!(other.json()["verdict"]["stood"], 0);
+    assert!(other.json()["radius"].as_f64().unwrap() > 1.0);
     assert_ne!(
         other.json()["fingerprint"],
         data["fingerprint"],

@@ -28,6 +28,8 @@ mod laws;
 #[cfg(unix)]
 mod mcap;
 mod mixed_motions;
+#[cfg(feature = "virtual-cm5")]
+mod model_plans;
 mod names;
 mod rate_sensors;
 #[cfg(unix)]

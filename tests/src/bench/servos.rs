@@ -66,7 +66,7 @@ impl Rig {
             scale: (step / Attitude::RATE_LSB_RAD_S * 16.0).round() as i16,
         });
         let board = Board {
-            dead_zone: self.dead_zone,
+            dead_zone: [self.dead_zone; 2],
             gyro: gyro.unwrap_or(Board::BIOLOID.gyro),
             joint_range_rad: 1.5,
             joint_speed_rad_s: 20.0,

@@ -1,7 +1,7 @@
 //! A page that shows both attempts side by side.
 
-use super::attempt::{AttemptSample, BalanceAttempt, STANDS_S};
 use super::run::RobotDemo;
+use crate::deploy::rehearsal::{AttemptSample, BalanceAttempt, STANDS_S};
 use crate::output::number::exact;
 use crate::output::plot::{Chart, Curve, Tone};
 use crate::report::page::{Section, document, table};

@@ -1,10 +1,11 @@
 //! The circle itself: attempt, measurement, diagnosis, second attempt, score.
 
-use super::attempt::BalanceAttempt;
 use super::hidden::{HiddenRobot, NOMINAL, RobotEffect};
-use super::learning::{Learned, plan_for};
+use super::learning::Learned;
 use super::{page, recording};
 use crate::challenge::seal;
+use crate::deploy::rehearsal::{BalanceAttempt, Setting};
+use crate::deploy::{Board, PlanBasis, ToldDrives};
 use crate::diagnose::{Diagnosis, Verdict};
 use crate::error::{Error, Result};
 use crate::fitting::{Candidate, Progress};
@@ -12,6 +13,7 @@ use crate::log::LogSet;
 use crate::model::Model;
 use crate::output::number::exact;
 use crate::output::write_new;
+use crate::synth::controllers::BoardTiming;
 use serde::Serialize;
 use std::path::Path;
 
@@ -79,7 +81,7 @@ pub fn run(seed: u64, dir: &Path, hear: &(dyn Fn(DemoStep) + Sync)) -> Result<Ro
     write_new(&dir.join("answer.sealed"), &seal(&robot.answer), false)?;
     hear(DemoStep::Drawn);
 
-    let nominal = BalanceAttempt::run(&robot, &plan_for(&Model::parse(NOMINAL, &file)?)?)?;
+    let nominal = attempt(&robot, &Model::parse(NOMINAL, &file)?)?;
     hear(DemoStep::First(&nominal));
 
     let logs = recording::record(&robot, dir)?;
@@ -98,7 +100,7 @@ pub fn run(seed: u64, dir: &Path, hear: &(dyn Fn(DemoStep) + Sync)) -> Result<Ro
     hear(DemoStep::Diagnosed(&taught.diagnosis));
 
     let model = Model::parse(&taught.model_toml, &file)?;
-    let learned = BalanceAttempt::run(&robot, &plan_for(&model)?)?;
+    let learned = attempt(&robot, &model)?;
     hear(DemoStep::Second(&learned));
 
     let demo = RobotDemo {
@@ -114,6 +116,17 @@ pub fn run(seed: u64, dir: &Path, hear: &(dyn Fn(DemoStep) + Sync)) -> Result<Ro
     };
     write_new(&dir.join("page.html"), &page::html(&demo), false)?;
     Ok(demo)
+}
+
+/// Balances the robot with the plan that `handstand deploy` makes of this model.
+fn attempt(robot: &HiddenRobot, model: &Model) -> Result<BalanceAttempt> {
+    let (board, timing) = (Board::BIOLOID, BoardTiming::HOST_ATTITUDE);
+    let plan = PlanBasis::of(model, &board, &timing, &ToldDrives::default())?.plan(model)?;
+    let setting = Setting {
+        start_deg: robot.start_deg,
+        ..Setting::default()
+    };
+    BalanceAttempt::run(&robot.model()?, &plan, &setting)
 }
 
 /// Whether exactly the hidden effects were added, in whatever order.

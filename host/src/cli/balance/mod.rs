@@ -109,7 +109,7 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
     let given = args
         .plan
         .as_deref()
-        .map(|file| plan(args, file))
+        .map(|file| plan(args, file, talk))
         .transpose()?;
     let interrupt = Interrupt::listen();
     let (link, robot) = args.port.open_with_attitude()?;

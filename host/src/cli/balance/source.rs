@@ -1,8 +1,10 @@
 //! Where the plan and the first link's attitude come from.
 
 use super::{AttitudeKind, BalanceArgs};
+use crate::cli::Talk;
+use crate::cli::deploy::uses_table;
 use handstand::deploy::balance::{AttitudeLines, AttitudeSource};
-use handstand::deploy::{self, BoardLaw, plan_of_file};
+use handstand::deploy::plan_of_file;
 use handstand::{Error, Model, Result};
 use handstand_shared::plan::Plan;
 use std::path::Path;
@@ -11,15 +13,16 @@ use std::path::Path;
 ///
 /// # Errors
 /// A file that cannot be read, or values that cannot be designed for.
-pub fn plan(args: &BalanceArgs, file: &Path) -> Result<Plan> {
+pub fn plan(args: &BalanceArgs, file: &Path, talk: &Talk) -> Result<Plan> {
     if file.extension().is_some_and(|ending| ending == "rs") {
         let text = std::fs::read_to_string(file);
         let text = text.map_err(|error| Error::file(file, "read", error))?;
         return plan_of_file(&text, file);
     }
-    let (model, board) = (Model::load(file)?, args.board.board()?);
-    let machine = deploy::observer_design(&model, &board, &args.board.timing()?)?;
-    deploy::plan(&model, BoardLaw::Observer(&machine), &board)
+    let model = Model::load(file)?;
+    let basis = args.board.basis(&model)?;
+    talk.say(&uses_table(&basis.uses));
+    basis.plan(&model)
 }
 
 /// Where the attitude comes from.

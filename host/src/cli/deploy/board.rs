@@ -1,9 +1,9 @@
 //! Arguments for servos, limits and sensors of the robot.
 
 use crate::cli::port::id_list;
-use handstand::deploy::{Board, ServoPair};
+use handstand::deploy::{Board, PlanBasis, ServoPair, ToldDrives};
 use handstand::synth::controllers::BoardTiming;
-use handstand::{Error, Result};
+use handstand::{Error, Model, Result};
 use handstand_shared::message::Attitude;
 use handstand_shared::plan::Gyro;
 use handstand_shared::raw::Position;
@@ -14,12 +14,19 @@ pub struct BoardArgs {
     /// Servos of shoulder and hip; a second one in a joint faces the other way
     #[arg(long, default_value = "1+2/11+12", value_parser = joints)]
     joints: JointServos,
-    /// Torque of a joint at full output, N m
-    #[arg(long, default_value_t = 2.0)]
-    full_torque: f64,
-    /// Share of full output below which a servo does not move; jumped over
-    #[arg(long, default_value_t = 0.085)]
-    dead_zone: f64,
+    /// Torque of a joint that is left at full output, N m [default: the model's]
+    #[arg(long)]
+    full_torque: Option<f64>,
+    /// Share of full output that a servo loses of every command; jumped over [default: what dead
+    /// zone and dry friction of the model take]
+    #[arg(long)]
+    dead_zone: Option<f64>,
+    /// Delay of the drives, s [default: the model's]
+    #[arg(long)]
+    drive_delay: Option<f64>,
+    /// Supply that the robot will have, V [default: that of the model's figures]
+    #[arg(long)]
+    supply: Option<f64>,
     /// Largest share of full output
     #[arg(long, default_value_t = 1.0)]
     most: f64,
@@ -33,11 +40,12 @@ pub struct BoardArgs {
     /// ADC code of the gyro at rest
     #[arg(long, default_value_t = 512)]
     gyro_zero: u16,
-    /// Time constant with which a servo's torque follows its command, s; 0: at once
-    #[arg(long, default_value_t = BoardTiming::SERVO_LAG_S)]
+    /// Time constant with which a servo's torque follows its command, s; 0: at once. No effect of a
+    /// model says it; that of the paper's servo is 0.034
+    #[arg(long, default_value_t = 0.0)]
     servo_lag: f64,
     /// Departure of the first link at which it counts as fallen, rad
-    #[arg(long, default_value_t = 0.5)]
+    #[arg(long, default_value_t = Board::BIOLOID.range_rad)]
     fallen: f64,
     /// Departure of a driven joint from straight at which torque goes off, rad
     #[arg(long, default_value_t = Board::BIOLOID.joint_range_rad)]
@@ -57,23 +65,44 @@ fn joints(text: &str) -> Result<JointServos, String> {
 }
 
 impl BoardArgs {
-    /// When readings are taken and torques act.
+    /// What a plan for this model is made with.
     ///
     /// # Errors
-    /// A lag that is none.
-    pub fn timing(&self) -> Result<BoardTiming> {
-        let timing = match self.gyro_per_code {
+    /// Values that fit no register, or a model that there is no plan for.
+    pub fn basis(&self, model: &Model) -> Result<PlanBasis> {
+        PlanBasis::of(model, &self.board()?, &self.timing(), &self.told()?)
+    }
+
+    /// When readings are taken.
+    pub fn timing(&self) -> BoardTiming {
+        match self.gyro_per_code {
             Some(step) => BoardTiming::gyro(step.abs()),
             None => BoardTiming::HOST_ATTITUDE,
-        };
-        // Shorter ones are lost in the period, and the state before them hardly to be computed.
-        match self.servo_lag {
-            0.0 => Ok(timing),
-            lag => Ok(timing.with_lag(within("--servo-lag", lag, 2e-3, 0.2)?)),
         }
     }
 
-    /// The board they describe.
+    /// What is told of the drives beside the model.
+    ///
+    /// # Errors
+    /// Values that are none.
+    pub fn told(&self) -> Result<ToldDrives> {
+        let within = |name: &str, value: Option<f64>, least: f64, most: f64| {
+            let value = value.map(|value| within(name, value, least, most));
+            value.transpose()
+        };
+        // Shorter lags are lost in the period, and the state before them hardly to be computed.
+        let lag_s = Some(self.servo_lag).filter(|lag_s| *lag_s != 0.0);
+        Ok(ToldDrives {
+            full_nm: within("--full-torque", self.full_torque, 1e-3, 1e3)?,
+            dead_zone: within("--dead-zone", self.dead_zone, 0.0, 0.999)?,
+            delay_s: within("--drive-delay", self.drive_delay, 0.0, 0.5)?,
+            lag_s: within("--servo-lag", lag_s, 2e-3, 0.2)?.unwrap_or(0.0),
+            supply_v: within("--supply", self.supply, 1.0, 100.0)?,
+            most_share: within("--most", Some(self.most), 1e-3, 1.0)?.unwrap_or(1.0),
+        })
+    }
+
+    /// The servos, sensors and safety limits they describe.
     ///
     /// # Errors
     /// Values that fit no register.
@@ -84,7 +113,6 @@ impl BoardArgs {
                 "name the servos of shoulder and hip: 1+2/11+12",
             ));
         };
-        let full_nm = within("--full-torque", self.full_torque, 1e-3, 1e3)?;
         let range = within(
             "--fallen",
             self.fallen / Attitude::ANGLE_LSB_RAD,
@@ -92,17 +120,13 @@ impl BoardArgs {
             65_535.0,
         )?;
         Ok(Board {
-            period_s: Board::BIOLOID.period_s,
             servos: [servo(shoulder)?, servo(hip)?],
-            full_nm,
-            most_nm: full_nm * within("--most", self.most, 1e-3, 1.0)?,
-            dead_zone: within("--dead-zone", self.dead_zone, 0.0, 0.999)?,
-            starts_at_zero: true,
             slew_nm: within("--slew", self.slew, 1e-3, 1e3)?,
             gyro: self.gyro()?,
             range_rad: range * Attitude::ANGLE_LSB_RAD,
             joint_range_rad: within("--joint-range", self.joint_range, 0.01, 2.6)?,
             joint_speed_rad_s: within("--joint-speed", self.joint_speed, 0.3, 100.0)?,
+            ..Board::BIOLOID
         })
     }
 

@@ -1,7 +1,7 @@
-//! What the torque limit allows, as a table.
+//! What a plan takes of a model, and what the torque limit allows, as tables.
 
 use crate::cli::show::table_of;
-use handstand::deploy::ModeLimit;
+use handstand::deploy::{EffectUse, ModeLimit};
 use handstand::output::table::TableColumn;
 
 /// A line for each unstable mode.
@@ -20,4 +20,14 @@ pub fn limits_table(limits: &[ModeLimit]) -> String {
         }),
     ];
     table_of(limits, columns).to_string()
+}
+
+/// A line for each effect of a model: where its plan has it.
+pub fn uses_table(uses: &[EffectUse]) -> String {
+    let columns: &[TableColumn<EffectUse>] = &[
+        ("Of the model", &|used| used.effect.clone()),
+        ("In the plan", &|used| used.place.name().to_string()),
+        ("How", &|used| used.how.clone()),
+    ];
+    table_of(uses, columns).to_string()
 }

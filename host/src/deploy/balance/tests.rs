@@ -73,7 +73,7 @@ fn standing() -> Standing {
     let ids: Vec<u8> = (1..=18).collect();
     let mut balancer = Balancer::new(link, &ids, source).unwrap();
     let board = Board {
-        dead_zone: 0.0,
+        dead_zone: [0.0; 2],
         ..Board::BIOLOID
     };
     let model = Model::load(file.as_ref()).unwrap();

@@ -1,7 +1,7 @@
 //! How the robot is reached.
 
-use crate::deploy::Board;
 use crate::deploy::balance::AttitudeSource;
+use crate::deploy::{Board, ToldDrives};
 use crate::error::Result;
 use crate::link::SerialLink;
 use crate::synth::controllers::BoardTiming;
@@ -18,10 +18,12 @@ pub struct RobotAccess {
     pub port: String,
     /// Its servos.
     pub ids: Vec<u8>,
-    /// Servos, limits and sensors that a plan is made for.
+    /// Servos, safety limits and sensors that a plan is made for.
     pub board: Board,
-    /// When readings are taken and torques act.
+    /// When readings are taken.
     pub timing: BoardTiming,
+    /// What is told of the drives beside a model.
+    pub told: ToldDrives,
     /// Opens the port; called for each run.
     pub open: Arc<dyn Fn() -> Result<OpenLine> + Send + Sync>,
 }

@@ -4,10 +4,10 @@ use super::access::OpenLine;
 use super::pose::LinkPose;
 use super::samples::{LiveChart, Sender};
 use super::slot::{LivePhase, LiveRobot};
+use crate::deploy::PlanBasis;
 use crate::deploy::balance::{
     AttitudeSource, BalanceStatus, BalanceWatch, Balancer, Supervision, WheelChange, check_attitude,
 };
-use crate::deploy::{self, BoardLaw};
 use crate::error::Result;
 use crate::link::SerialLink;
 use crate::link::record::{RobotRecorder, RobotSample};
@@ -84,9 +84,8 @@ pub fn run(
 /// The plan for a model, as `handstand balance MODEL` designs it.
 fn plan(robot: &LiveRobot, model: &Model) -> Result<Plan> {
     prepares(robot, "designing the plan");
-    let board = &robot.access.board;
-    let machine = deploy::observer_design(model, board, &robot.access.timing)?;
-    deploy::plan(model, BoardLaw::Observer(&machine), board)
+    let access = &robot.access;
+    PlanBasis::of(model, &access.board, &access.timing, &access.told)?.plan(model)
 }
 
 /// The plan onto the CM-5, the servos into wheel mode; false where that was not agreed to.

@@ -107,7 +107,7 @@ fn wrong_masses_destabilise_the_paper_s_gain_and_not_the_multi_model_one() {
         with_inertia: false,
         weight: WEIGHT,
     };
-    let robust = multi.gain(&nominal).unwrap();
+    let robust = multi.gain(&nominal, 0.0).unwrap();
     let case = Case::ideal(model, DEFAULT, 0.01);
     for with_inertia in [false, true] {
         let errors = MassErrors {

@@ -1,7 +1,7 @@
 //! When the CM-5 reads and acts in a period of its law, and how well its sensors tell.
 
 use crate::sim::closed_loop::GYRO_STEP_RAD_S;
-use handstand_shared::observer::READINGS;
+use handstand_shared::observer::{INPUTS, READINGS};
 use handstand_shared::raw::Position;
 
 /// When things happen in a period, and how well the readings tell.
@@ -9,8 +9,13 @@ use handstand_shared::raw::Position;
 pub struct BoardTiming {
     /// From the law's moment until its inputs act, s.
     pub effect_s: f64,
+    /// Delay of each drive beside it, s.
+    pub drive_delay_s: [f64; INPUTS],
     /// Time constant with which a servo's torque follows its input, s; 0: at once.
     pub lag_s: f64,
+    /// Time constant of the filter that the encoder of each driven joint is read through, s; 0: none.
+    /// Only where torques follow at once: else the states it takes are the torques'.
+    pub sensor_lag_s: [f64; INPUTS],
     /// Age of each reading at the law's moment, s: the angles, then the first link's rate.
     pub age_s: [f64; READINGS],
     /// Standard deviation of each reading, in SI; infinite for one that there is not. Without the
@@ -33,7 +38,9 @@ impl BoardTiming {
     /// The torque follows at once.
     pub const HOST_ATTITUDE: BoardTiming = BoardTiming {
         effect_s: 0.9e-3,
+        drive_delay_s: [0.0; INPUTS],
         lag_s: 0.0,
+        sensor_lag_s: [0.0; INPUTS],
         age_s: [8.2e-3, 0.4e-3, 0.2e-3, 8.2e-3],
         deviation: [
             EXACT_RAD,
@@ -65,6 +72,21 @@ impl BoardTiming {
     #[must_use]
     pub const fn with_lag(self, lag_s: f64) -> BoardTiming {
         BoardTiming { lag_s, ..self }
+    }
+
+    /// From the law's moment until each input acts, s.
+    pub fn effects_s(&self) -> [f64; INPUTS] {
+        self.drive_delay_s.map(|delay_s| self.effect_s + delay_s)
+    }
+
+    /// The same of the latest.
+    pub fn latest_effect_s(&self) -> f64 {
+        self.effects_s().into_iter().fold(0.0, f64::max)
+    }
+
+    /// Whether the reading of a driven joint is a filter's, which has a state of its own.
+    pub(super) fn is_filtered(&self, place: usize) -> bool {
+        self.lag_s <= 0.0 && self.sensor_lag_s[place] > 0.0
     }
 
     /// Whether nothing measures the first link's angle.

@@ -30,7 +30,7 @@ pub use info::{ControllerDesign, ControllerInfo, Speeds};
 pub use known_equilibrium::KnownEquilibrium;
 pub use linear_law::LinearLaw;
 pub use observed::ObservedDesign;
-pub use on_board::OnBoard;
+pub use on_board::{OnBoard, board_plant};
 pub use reason::ControllerReason;
 pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
 pub use servo::{ServoLag, Through};

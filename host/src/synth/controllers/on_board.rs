@@ -19,7 +19,7 @@ use super::observed::{Options, process_noise, regulator};
 use super::plant::{continuous, with_offsets};
 use super::{ControllerReason, DesignModel};
 use crate::error::Result;
-use crate::synth::{Continuous, Discrete, kalman, zoh};
+use crate::synth::{Continuous, Discrete, kalman, zoh, zoh_each};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
 };
@@ -63,22 +63,14 @@ impl OnBoard {
     /// Robots of other than three joints, two of them driven; effects or readings later than three
     /// periods; plants that cannot be held or are not seen.
     pub fn new(known: &DesignModel, timing: &BoardTiming) -> Result<OnBoard> {
-        let (joints, drives) = (known.joints(), known.drives());
-        if (joints, drives) != (JOINTS, INPUTS) {
-            return Err(ControllerReason::BoardSize { joints, drives }.into());
-        }
-        let known = &DesignModel {
-            delay_s: timing.effect_s,
-            servo: None,
-            ..known.clone()
-        };
+        let known = &on_time(known, timing)?;
         let options = match timing.is_gyro() {
             true => &BY_GYRO,
             false => &BEST.options,
         };
         let wide = lagging(known, timing);
         let predict = outputs(known, timing, &wide)?;
-        let believed = widened(known, &wide)?;
+        let believed = widened(known, timing, &wide)?;
         let l = filter(known, options, timing, &believed, &wide, &predict)?;
         let gains = gains(known, options, timing, &wide)?;
         let (a, b) = (&believed.a, &believed.b);
@@ -111,6 +103,40 @@ impl OnBoard {
     }
 }
 
+/// What the board's drives do and its readings tell, sampled: the state is [angles, speeds, torques,
+/// past inputs], the outputs are the readings, each of its own age.
+///
+/// # Errors
+/// Robots of other than three joints, two of them driven; effects or readings later than three
+/// periods.
+pub fn board_plant(known: &DesignModel, timing: &BoardTiming) -> Result<Discrete> {
+    let known = &on_time(known, timing)?;
+    let wide = lagging(known, timing);
+    let predict = outputs(known, timing, &wide)?;
+    let believed = widened(known, timing, &wide)?;
+    // Offsets are a filter's: the plant has none.
+    let plain = |matrix: DMatrix<f64>| matrix.remove_columns(2 * JOINTS, JOINTS);
+    Ok(Discrete {
+        a: plain(believed.a).remove_rows(2 * JOINTS, JOINTS),
+        b: believed.b.remove_rows(2 * JOINTS, JOINTS),
+        c: plain(predict),
+        ..believed
+    })
+}
+
+/// What is known, with the board's timing.
+fn on_time(known: &DesignModel, timing: &BoardTiming) -> Result<DesignModel> {
+    let (joints, drives) = (known.joints(), known.drives());
+    if (joints, drives) != (JOINTS, INPUTS) {
+        return Err(ControllerReason::BoardSize { joints, drives }.into());
+    }
+    Ok(DesignModel {
+        delay_s: timing.latest_effect_s(),
+        servo: None,
+        ..known.clone()
+    })
+}
+
 fn times(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
     let products = matrix.row(row);
     products.iter().zip(vector).map(|(k, x)| k * x).sum()
@@ -139,6 +165,14 @@ fn lagging(known: &DesignModel, timing: &BoardTiming) -> Continuous {
             b[(drive, drive - TORQUES)] = 1.0 / timing.lag_s;
         }
     }
+    for (place, &joint) in known.driven.iter().enumerate() {
+        if timing.is_filtered(place) {
+            // The state of a torque that follows at once is free: T f' + f = angle.
+            let per_s = 1.0 / timing.sensor_lag_s[place];
+            a[(TORQUES + place, TORQUES + place)] = -per_s;
+            a[(TORQUES + place, joint)] = per_s;
+        }
+    }
     Continuous {
         a,
         b,
@@ -160,7 +194,7 @@ fn gains(
         b: wide.b.clone().remove_rows(2 * JOINTS, JOINTS),
         c: DMatrix::identity(ESTIMATED - JOINTS, ESTIMATED - JOINTS),
     };
-    let narrow = zoh(&narrow, known.period_s, known.delay_s)?;
+    let narrow = zoh_each(&narrow, known.period_s, &timing.effects_s())?;
     let narrow = regulator(known, options, &narrow)?.k;
     let mut gains = with_offsets(&narrow, JOINTS).resize_horizontally(ESTIMATED + PAST, 0.0);
     if timing.is_gyro() {
@@ -207,8 +241,8 @@ fn filter(
 }
 
 /// The sampled plant with offsets, torques and as many past inputs as the CM-5 keeps.
-fn widened(known: &DesignModel, wide: &Continuous) -> Result<Discrete> {
-    let late = zoh(wide, known.period_s, known.delay_s)?;
+fn widened(known: &DesignModel, timing: &BoardTiming, wide: &Continuous) -> Result<Discrete> {
+    let late = zoh_each(wide, known.period_s, &timing.effects_s())?;
     if late.delayed_inputs > DELAYS {
         let delay_s = known.delay_s;
         return Err(ControllerReason::TooLate { delay_s }.into());
@@ -244,13 +278,31 @@ fn widened(known: &DesignModel, wide: &Continuous) -> Result<Discrete> {
 fn outputs(known: &DesignModel, timing: &BoardTiming, wide: &Continuous) -> Result<DMatrix<f64>> {
     let mut c = DMatrix::zeros(READINGS, ESTIMATED + PAST);
     for (reading, age_s) in timing.age_s.into_iter().enumerate() {
-        let ago = ago(known, wide, timing.effect_s, age_s)?;
-        c.row_mut(reading).copy_from(&ago.row(reading));
+        for (input, effect_s) in timing.effects_s().into_iter().enumerate() {
+            let ago = ago(known, wide, effect_s, age_s)?;
+            let row = ago.row(read_state(known, timing, reading));
+            if input == 0 {
+                c.row_mut(reading).copy_from(&row);
+            }
+            // Inputs add up: each has the share that it has where all act when it does.
+            for place in (ESTIMATED + input..ESTIMATED + PAST).step_by(INPUTS) {
+                c[(reading, place)] = row[place];
+            }
+        }
     }
     if timing.is_gyro() {
         c[(JOINTS, GYRO_OFFSET)] += 1.0;
     }
     Ok(c)
+}
+
+/// The state that a reading tells: that of the filter which it comes through, else the joint's own.
+fn read_state(known: &DesignModel, timing: &BoardTiming, reading: usize) -> usize {
+    let place = known.driven.iter().position(|joint| *joint == reading);
+    match place.filter(|place| timing.is_filtered(*place)) {
+        Some(place) => TORQUES + place,
+        None => reading,
+    }
 }
 
 /// The state [x, offsets, torques] `age_s` ago as a linear function of that and past inputs now.

@@ -40,20 +40,21 @@ pub struct MultiModel {
 }
 
 impl MultiModel {
-    /// K, m x n: the gain of least mean cost over all the plants.
+    /// K: the gain of least mean cost over all the plants, whose inputs are `delay_s` late; columns
+    /// are those of the state, and of as many past inputs as the delay takes.
     ///
     /// # Errors
     /// A pose that is no equilibrium; errors so large that no gain was found for all.
-    pub fn gain(&self, model: &DesignModel) -> Result<DMatrix<f64>> {
+    pub fn gain(&self, model: &DesignModel, delay_s: f64) -> Result<DMatrix<f64>> {
         let (n, m) = (model.plant.a.nrows(), model.drives());
         let q = DMatrix::identity(n, n) * self.weight;
-        let spread = |part: f64| self.corners(model, part);
+        let spread = |part: f64| self.corners(model, delay_s, part);
         multi_model_continuation(spread, STAGES, &q, &DMatrix::identity(m, m))
     }
 
     /// The model itself, then every combination of lightest and heaviest links, at `part` of the
     /// errors.
-    fn corners(&self, model: &DesignModel, part: f64) -> Result<Vec<Discrete>> {
+    fn corners(&self, model: &DesignModel, delay_s: f64, part: f64) -> Result<Vec<Discrete>> {
         let n = model.model.link_count();
         // All corners would be too many for long chains: links ten apart err alike.
         let corners = 1usize << n.min(10);
@@ -71,12 +72,12 @@ impl MultiModel {
         });
         std::iter::once(vec![0.0; n])
             .chain(shares)
-            .map(|share| self.plant(model, &share))
+            .map(|share| self.plant(model, delay_s, &share))
             .collect()
     }
 
     /// The sampled linear plant with the mass of link i multiplied by 1 + `share[i]`.
-    fn plant(&self, model: &DesignModel, share: &[f64]) -> Result<Discrete> {
+    fn plant(&self, model: &DesignModel, delay_s: f64, share: &[f64]) -> Result<Discrete> {
         let mut other = model.model.clone();
         for (link, share) in other.links.iter_mut().zip(share) {
             link.mass_kg *= 1.0 + share;
@@ -85,7 +86,7 @@ impl MultiModel {
             }
         }
         let other = DesignModel::new(&other, &model.pose_rad, model.period_s)?;
-        Ok(zoh(&other.plant, model.period_s, 0.0)?)
+        Ok(zoh(&other.plant, model.period_s, delay_s)?)
     }
 }
 
@@ -100,7 +101,7 @@ impl ControllerDesign for Robust {
             with_inertia: false,
             weight: WEIGHT,
         };
-        let k = design.gain(known)?;
+        let k = design.gain(known, 0.0)?;
         Ok(Box::new(StateFeedback::new(known.joints(), rows(&k))))
     }
 }

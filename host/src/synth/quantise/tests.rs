@@ -71,6 +71,35 @@ proptest! {
     }
 }
 
+/// Where a shift is needed at all it costs no place of the input: a step is the finest with which
+/// the input reaches its range.
+#[test]
+fn a_shift_costs_no_place_of_the_input() {
+    for (gain, range) in [
+        (300.0, 2.0),
+        (80.0, 2.0),
+        (5.0, 2.0),
+        (700.0, 8.0),
+        (40.0, 0.3),
+    ] {
+        for bits in [10, 12, 14, 16, 20] {
+            let k = DMatrix::from_row_slice(1, 2, &[gain, gain / 9.0]);
+            let ranges = Ranges {
+                state: vec![0.5, 10.0],
+                input: vec![range],
+            };
+            let format = Format {
+                bits,
+                ..Format::default()
+            };
+            let law = quantise(&k, &[0.0; 2], &[0.0], &ranges, &format).unwrap();
+            let finest = power_of_two_above(range / largest_word(bits));
+            let coarse = law.shift[0] == 0 || law.input_step[0] == finest;
+            assert!(coarse, "{gain} {bits}: {} {finest}", law.input_step[0]);
+        }
+    }
+}
+
 #[test]
 fn a_sensor_s_steps_are_kept_or_refused() {
     let k = DMatrix::from_row_slice(1, 2, &[30.0, 4.0]);

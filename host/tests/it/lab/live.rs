@@ -13,10 +13,7 @@ const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml"
 /// A lab with the robot with ideal servos, held upright until torque comes on.
 fn lab(bench: &Bench) -> Server {
     let robot = format!("--robot sim-cm5:robot={MODEL},start=held,lean=1/-1/1");
-    Server::start(
-        bench,
-        &format!("{MODEL} {robot} --servo-lag 0 --dead-zone 0"),
-    )
+    Server::start(bench, &format!("{MODEL} {robot}"))
 }
 
 fn balance(seconds: impl Into<Value>) -> Value {
@@ -107,8 +104,8 @@ fn a_robot_balances_after_the_questions_and_is_let_down() {
     assert_eq!(logs(&server), ["robot.csv"]);
     // The same seconds as the command line balances.
     let line = format!(
-        "balance {MODEL} --port sim-cm5:robot={MODEL},start=held,lean=1/-1/1 --servo-lag 0 \
-         --dead-zone 0 --yes --countdown 0.1 --seconds 1 --record line.csv"
+        "balance {MODEL} --port sim-cm5:robot={MODEL},start=held,lean=1/-1/1 \
+         --yes --countdown 0.1 --seconds 1 --record line.csv"
     );
     assert_eq!(bench.run(&line).code, Some(0));
     let recorded = std::fs::read_to_string(bench.path("sessions/1/logs/robot.csv")).unwrap();
@@ -235,10 +232,7 @@ fn is_let_down_after(end: &str) -> bool {
     let mut port = String::new();
     let out = robot.0.stdout.take().unwrap();
     BufReader::new(out).read_line(&mut port).unwrap();
-    let words = format!(
-        "{MODEL} --robot {} --gyro-per-code 0.0174533 --servo-lag 0 --dead-zone 0",
-        port.trim()
-    );
+    let words = format!("{MODEL} --robot {} --gyro-per-code 0.0174533", port.trim());
     let server = Server::start(&bench, &words);
     let page = Watcher::new(&server);
     assert_eq!(page.begin(&balance(Value::Null)), 200);

@@ -146,7 +146,7 @@ fn a_robot_is_balanced_and_stopped_from_its_page() {
         return;
     };
     let robot = format!("--robot sim-cm5:robot={MODEL},start=held,lean=1/-1/1");
-    let words = format!("{MODEL} {robot} --servo-lag 0 --dead-zone 0");
+    let words = format!("{MODEL} {robot}");
     let server = Server::start_alone(&bench, &words);
     browser.open(&server.address);
     browser.until("document.getElementById('drop')");

@@ -1,11 +1,14 @@
-//! An attempt to balance the virtual robot with a plan, through the firmware.
+//! An attempt to balance a simulated robot with a plan, through the firmware's own logic.
 
-use super::hidden::HiddenRobot;
+use super::Setting;
+use super::manner::Manner;
 use crate::deploy::balance::{AttitudeSource, BalanceEnd, BalanceOutcome, Balancer};
+use crate::effects::{AtRest, Site};
 use crate::error::{Error, Result};
 use crate::link::virtual_cm5::{
     Cm5Port, SimLink, attitude_sensor_of, set_up_model, spec_with_robot,
 };
+use crate::model::Model;
 use handstand_shared::message::ArmLimits;
 use handstand_shared::plan::Plan;
 use serde::Serialize;
@@ -19,6 +22,8 @@ const SETTLES_S: f64 = 2.0;
 /// How an attempt went.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BalanceAttempt {
+    /// Fingerprint of the plan that balanced it.
+    pub fingerprint: String,
     /// How long it stood, s; at most 10 s.
     pub stood_s: f64,
     /// Whether that is all of it.
@@ -26,6 +31,8 @@ pub struct BalanceAttempt {
     /// Root mean square of the first link's angle from upright, rad, once 2 s have passed; none if it
     /// did not stand so long.
     pub sway_rms_rad: Option<f64>,
+    /// In which manner it stood at the end; none if it did not.
+    pub manner: Option<Manner>,
     /// Its end in words.
     pub end: String,
     /// Every report.
@@ -50,17 +57,14 @@ impl BalanceAttempt {
     ///
     /// # Errors
     /// The firmware does not answer or refuses.
-    pub fn run(robot: &HiddenRobot, plan: &Plan) -> Result<BalanceAttempt> {
-        let [first, second, third] = robot.start_deg;
-        let text = format!("ids=1-18,delay=0,start=held,lean={first}/{second}/{third}");
-        let spec = spec_with_robot(&text, Some(Path::new("true.toml")))?;
-        let model = robot.model()?;
+    pub fn run(model: &Model, plan: &Plan, setting: &Setting) -> Result<BalanceAttempt> {
+        let (text, ids) = setting.bus(plan);
+        let spec = spec_with_robot(&text, Some(Path::new("rehearsal.toml")))?;
         let mut bus = set_up_model(&spec, model.clone())?;
-        let attitude = attitude_sensor_of(&mut bus, &model).ok_or_else(|| {
+        let attitude = attitude_sensor_of(&mut bus, model).ok_or_else(|| {
             Error::design("there is no robot on the bus", "this is a bug: report it")
         })?;
-        let ids: Vec<u8> = (1..=18).collect();
-        let source = AttitudeSource::Simulated(attitude);
+        let source = AttitudeSource::of_plan(Some(plan), Some(AttitudeSource::Simulated(attitude)));
         let mut balancer = Balancer::new(SimLink(Cm5Port::new(bus)), &ids, source)?;
         balancer.deploy(plan, |_| {})?;
         let changes = balancer.wheel_changes(plan)?;
@@ -71,7 +75,7 @@ impl BalanceAttempt {
         loop {
             balancer.step()?;
             if let Some(outcome) = balancer.end()? {
-                return Ok(BalanceAttempt::new(samples, &outcome));
+                return Ok(BalanceAttempt::new((model, plan), samples, &outcome));
             }
             let status = &balancer.status;
             samples.push(AttemptSample {
@@ -81,21 +85,44 @@ impl BalanceAttempt {
             });
             if status.balanced_s >= STANDS_S {
                 let outcome = balancer.let_down(BalanceEnd::Finished)?;
-                return Ok(BalanceAttempt::new(samples, &outcome));
+                return Ok(BalanceAttempt::new((model, plan), samples, &outcome));
             }
         }
     }
 
-    fn new(samples: Vec<AttemptSample>, outcome: &BalanceOutcome) -> BalanceAttempt {
+    fn new(
+        (model, plan): (&Model, &Plan),
+        samples: Vec<AttemptSample>,
+        outcome: &BalanceOutcome,
+    ) -> BalanceAttempt {
         let late = samples.iter().filter(|sample| sample.time_s > SETTLES_S);
         let squares: Vec<f64> = late.map(|sample| sample.lean_rad.powi(2)).collect();
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
         BalanceAttempt {
+            fingerprint: format!("{:08X}", plan.fingerprint()),
             stood_s: outcome.balanced_s.min(STANDS_S),
             stands: outcome.end == BalanceEnd::Finished,
             sway_rms_rad: (!squares.is_empty()).then_some(mean.sqrt()),
+            manner: (outcome.end == BalanceEnd::Finished)
+                .then(|| Manner::of(&samples, sticks(model))),
             end: outcome.words(),
             samples,
         }
     }
+}
+
+/// Whether a joint of this robot can stick: its friction jumps at standstill.
+fn sticks(model: &Model) -> bool {
+    let at_rest = AtRest {
+        angle_rad: 0.0,
+        duty: 0.0,
+        torque_nm: 0.0,
+        full_torque_nm: 1.0,
+    };
+    let mut effects = model.effects.iter();
+    effects.any(|instance| {
+        let effect = instance.effect;
+        let is_friction = effect.info().site == Site::Friction;
+        is_friction && effect.slope(&instance.values, &at_rest).is_none()
+    })
 }

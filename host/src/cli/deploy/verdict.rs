@@ -1,0 +1,65 @@
+//! Whether a plan holds the model's robot.
+
+use super::Planned;
+use crate::cli::Talk;
+use handstand::Result;
+#[cfg(feature = "virtual-cm5")]
+use handstand::deploy::rehearsal::{Rehearsal, Setting};
+use handstand_shared::plan::Plan;
+
+/// A program without simulated servos has none.
+#[cfg(not(feature = "virtual-cm5"))]
+#[derive(serde::Serialize)]
+pub enum Rehearsal {}
+
+/// Seed of the starts.
+#[cfg(feature = "virtual-cm5")]
+const SEED: u64 = 1;
+
+/// Tries the plan out.
+///
+/// # Errors
+/// A model that is no robot on these servos.
+#[cfg(feature = "virtual-cm5")]
+pub fn of(made: &Planned, talk: &Talk) -> Result<Option<Rehearsal>> {
+    let setting = Setting {
+        lag_s: made.basis.timing.lag_s,
+        supply_v: made.basis.supply_v,
+        ..Setting::default()
+    };
+    let rehearsal = Rehearsal::of(&made.model, &made.plan, &setting, SEED)?;
+    if !rehearsal.holds {
+        talk.say(&rehearsal.words(&made.plan));
+    }
+    Ok(Some(rehearsal))
+}
+
+/// Says that there is no verdict.
+///
+/// # Errors
+/// Never.
+#[cfg(not(feature = "virtual-cm5"))]
+pub fn of(_made: &Planned, talk: &Talk) -> Result<Option<Rehearsal>> {
+    talk.say("no verdict: this program was built without simulated servos");
+    Ok(None)
+}
+
+/// The verdict in a sentence.
+pub fn words(rehearsal: Option<&Rehearsal>, plan: &Plan) -> String {
+    #[cfg(feature = "virtual-cm5")]
+    if let Some(rehearsal) = rehearsal {
+        return rehearsal.words(plan);
+    }
+    let _ = (rehearsal, plan);
+    "no verdict: this program was built without simulated servos".to_string()
+}
+
+/// Whether nothing speaks against the plan.
+pub fn holds(rehearsal: Option<&Rehearsal>) -> bool {
+    #[cfg(feature = "virtual-cm5")]
+    if let Some(rehearsal) = rehearsal {
+        return rehearsal.holds;
+    }
+    let _ = rehearsal;
+    true
+}
