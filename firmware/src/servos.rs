@@ -1,15 +1,23 @@
 //! The servos as a group: who they are, where they are, and what they last said.
 
 use handstand_shared::dynamixel::ErrorBits;
-use handstand_shared::message::{Cause, Housekeeping, ServoList, TrippedServo};
+use handstand_shared::message::{ArmLimits, Cause, Housekeeping, ServoList, TrippedServo};
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::{Position, ReturnDelay, Supply};
 
 mod commands;
+mod mode;
+mod registers;
 mod round;
+
+use mode::ServoMode;
+use registers::Registers;
 
 /// Error bits of a servo that drops its torque, or is about to.
 const GAVE_UP: u8 = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
+
+/// Requests in a row that a servo may leave unanswered and is commanded all the same. Three ticks.
+const MOST_UNANSWERED: u8 = 4;
 
 /// The lowest supply of a round that is not heard whole: none.
 const PART_OF_A_ROUND: Supply = Supply(0);
@@ -21,8 +29,8 @@ pub struct Servo {
     pub id: u8,
     /// Its return delay; the factory's until it was asked.
     delay: ReturnDelay,
-    /// Whether it turns without end; none until it was asked.
-    is_wheel: Option<bool>,
+    /// Unknown until it was asked.
+    mode: ServoMode,
     /// Where it was when it last answered.
     pub position: Position,
     /// Requests in a row that it did not answer: two in the first tick in which it is silent, then
@@ -30,6 +38,10 @@ pub struct Servo {
     unanswered: u8,
     /// Whether it is commanded.
     pub armed: bool,
+    /// Whether its registers were read, and are as they were written.
+    registers: Registers,
+    /// Whether they are read in this tick.
+    is_read_whole: bool,
     /// The goal it was last sent.
     pub goal: Position,
 }
@@ -41,10 +53,24 @@ impl Servo {
     }
 
     fn hear(&mut self, has_answered: bool) {
-        self.unanswered = match has_answered {
-            true => 0,
-            false => self.unanswered.saturating_add(1),
-        };
+        if has_answered {
+            self.unanswered = 0;
+        } else {
+            self.unanswered = self.unanswered.saturating_add(1);
+            self.registers = self.registers.after_silence(self.was_heard_lately());
+        }
+    }
+
+    /// Whether it answered in one of the last three ticks: an answer that is lost as torque comes
+    /// on would leave a joint to one of its two servos.
+    fn was_heard_lately(&self) -> bool {
+        self.unanswered <= MOST_UNANSWERED
+    }
+
+    /// Whether it gets goals: one that was silent for longer has its torque off, or another goal,
+    /// until it was read.
+    fn takes_goals(&self) -> bool {
+        self.armed && self.registers != Registers::Withheld
     }
 }
 
@@ -57,7 +83,7 @@ pub struct Servos {
     count: u8,
     /// Their positions, as they are reported.
     pub positions: Positions,
-    /// Place of the servo that is asked next for its return delay and mode.
+    /// Place of the servo that was asked last for its return delay and mode.
     asked: u8,
     /// Place of the first servo whose housekeeping are read in this tick.
     pub housekeeping_from: u8,
@@ -74,6 +100,8 @@ pub struct Servos {
     pub tripped: Option<TrippedServo>,
     /// Whether torque was switched on in all that are commanded.
     has_torque: bool,
+    /// What those that are commanded were written.
+    limits: ArmLimits,
 }
 
 impl Servos {
@@ -82,10 +110,12 @@ impl Servos {
         let unknown = Servo {
             id: 0,
             delay: ReturnDelay::FACTORY,
-            is_wheel: None,
+            mode: ServoMode::Unknown,
             position: Position::CENTRE,
             unanswered: u8::MAX,
             armed: false,
+            registers: Registers::Unread,
+            is_read_whole: false,
             goal: Position::CENTRE,
         };
         let mut servos = [unknown; SERVOS];
@@ -106,6 +136,7 @@ impl Servos {
             rounds: 0,
             tripped: None,
             has_torque: false,
+            limits: ArmLimits::NONE,
         }
     }
 
@@ -179,7 +210,7 @@ impl Servos {
     /// Whether the servo with this id was found to turn without end.
     pub fn is_wheel(&self, id: u8) -> bool {
         self.with_id(id)
-            .is_some_and(|servo| servo.is_wheel == Some(true))
+            .is_some_and(|servo| servo.mode == ServoMode::Wheel)
     }
 
     /// No supply is known before the end of a whole round of housekeeping: nothing was read in an
@@ -192,10 +223,18 @@ impl Servos {
 
     /// Asks all for their return delay and mode once more, one per tick.
     pub fn ask_again(&mut self) {
-        self.asked = 0;
         for servo in self.all_mut() {
-            servo.is_wheel = None;
+            servo.mode = ServoMode::Unknown;
         }
+    }
+
+    /// Whether all that would be armed now have said their mode.
+    pub fn modes_are_known(&self) -> bool {
+        let unknown = |servo: &Servo| servo.mode == ServoMode::Unknown;
+        !self
+            .all()
+            .iter()
+            .any(|servo| servo.was_heard_lately() && unknown(servo))
     }
 
     /// Those that did not answer in this tick: a bit each.

@@ -98,6 +98,12 @@ impl Board for Cm5 {
         usart::bus::hear(&self.registers, out, first, between, all)
     }
 
+    fn wait(&mut self, us: u16) {
+        usart::bus::finish(&self.registers);
+        let began = self.clock();
+        while crate::board::since_us(self, began) < us {}
+    }
+
     #[inline(always)]
     fn bus_flush(&mut self) {
         usart::bus::flush();

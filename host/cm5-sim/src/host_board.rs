@@ -179,6 +179,11 @@ impl Board for HostBoard {
         }
     }
 
+    fn wait(&mut self, us: u16) {
+        self.now_ns += u64::from(us) * 1000;
+        self.bus.miss(self.now_ns);
+    }
+
     fn bus_flush(&mut self) {
         self.bus.miss(self.now_ns);
     }

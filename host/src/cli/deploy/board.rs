@@ -96,7 +96,7 @@ impl BoardArgs {
             servos: [servo(shoulder)?, servo(hip)?],
             full_nm,
             most_nm: full_nm * within("--most", self.most, 1e-3, 1.0)?,
-            dead_zone: within("--dead-zone", self.dead_zone, 0.0, 0.999)?,
+            dead_zone: within("--dead-zone", self.dead_zone, 0.0, 0.499)?,
             starts_at_zero: true,
             slew_nm: within("--slew", self.slew, 1e-3, 1e3)?,
             gyro: self.gyro()?,
@@ -108,6 +108,13 @@ impl BoardArgs {
 
     fn gyro(&self) -> Result<Gyro> {
         let scale = match self.gyro_per_code {
+            // A scale that rounds to nothing would be no gyro.
+            Some(step) if (step / Attitude::RATE_LSB_RAD_S * 16.0).abs() < 0.5 => {
+                return Err(Error::usage(
+                    format!("--gyro-per-code {step} rad/s is no rate"),
+                    "give the gyro's rad/s per ADC code, as its data sheet and the ADC say",
+                ));
+            }
             Some(step) => within(
                 "--gyro-per-code",
                 step / Attitude::RATE_LSB_RAD_S * 16.0,
@@ -116,6 +123,12 @@ impl BoardArgs {
             )?,
             None => 0.0,
         };
+        if self.gyro_zero > 1023 {
+            return Err(Error::usage(
+                format!("--gyro-zero {} is no ADC code", self.gyro_zero),
+                "give the gyro's code at rest, 0 to 1023",
+            ));
+        }
         Ok(Gyro {
             from_host: self.gyro_per_code.is_none(),
             zero: self.gyro_zero,
