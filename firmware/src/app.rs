@@ -44,6 +44,8 @@ enum Onset {
     Goals(u8),
     /// The others have torque, too, half of the list from this place on.
     Others(u8),
+    /// While streaming all have their goals, and get torque in the next tick.
+    Torque,
     /// All have it.
     Done,
 }
@@ -111,6 +113,8 @@ pub struct App {
 
 impl App {
     /// Torque off first of all, then everything else. A watchdog's reset is a fault.
+    // Apart from `main`, whose frame is there for ever: what is needed to start is not.
+    #[inline(never)]
     pub fn boot<B: Board>(board: &mut B) -> Self {
         bus::torque_off_at_start(board);
         let state = if board.reset_cause().is_watchdog() {

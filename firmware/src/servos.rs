@@ -19,6 +19,10 @@ const GAVE_UP: u8 = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
 /// Requests in a row that a servo may leave unanswered and is commanded all the same. Three ticks.
 const MOST_UNANSWERED: u8 = 4;
 
+/// Answers that a servo may miss until its mode is known and is waited for all the same: with a
+/// fifth of them lost, eight are 1 in 400,000.
+const MOST_MODE_MISSES: u8 = 8;
+
 /// The lowest supply of a round that is not heard whole: none.
 const PART_OF_A_ROUND: Supply = Supply(0);
 
@@ -31,6 +35,8 @@ pub struct Servo {
     delay: ReturnDelay,
     /// Unknown until it was asked.
     mode: ServoMode,
+    /// Answers it did not give since its mode was asked for; counted until it is known.
+    mode_misses: u8,
     /// Where it was when it last answered.
     pub position: Position,
     /// Requests in a row that it did not answer: two in the first tick in which it is silent, then
@@ -47,6 +53,22 @@ pub struct Servo {
 }
 
 impl Servo {
+    /// Of which nothing but its id is known.
+    fn unknown(id: u8) -> Self {
+        Servo {
+            id,
+            delay: ReturnDelay::FACTORY,
+            mode: ServoMode::Unknown,
+            mode_misses: 0,
+            position: Position::CENTRE,
+            unanswered: u8::MAX,
+            armed: false,
+            registers: Registers::Unread,
+            is_read_whole: false,
+            goal: Position::CENTRE,
+        }
+    }
+
     /// Whether it answered in this tick.
     pub fn is_present(&self) -> bool {
         self.unanswered == 0
@@ -58,6 +80,7 @@ impl Servo {
         } else {
             self.unanswered = self.unanswered.saturating_add(1);
             self.registers = self.registers.after_silence(self.was_heard_lately());
+            self.miss_mode();
         }
     }
 
@@ -65,6 +88,19 @@ impl Servo {
     /// on would leave a joint to one of its two servos.
     fn was_heard_lately(&self) -> bool {
         self.unanswered <= MOST_UNANSWERED
+    }
+
+    fn miss_mode(&mut self) {
+        if self.mode == ServoMode::Unknown {
+            self.mode_misses = self.mode_misses.saturating_add(1);
+        }
+    }
+
+    /// Whether it would be commanded if only its mode were known. Two servos of one id never say
+    /// it: they are left out.
+    fn owes_mode(&self) -> bool {
+        let is_unknown = self.mode == ServoMode::Unknown;
+        is_unknown && self.was_heard_lately() && self.mode_misses < MOST_MODE_MISSES
     }
 
     /// Whether it gets goals: one that was silent for longer has its torque off, or another goal,
@@ -107,44 +143,46 @@ pub struct Servos {
 impl Servos {
     /// Nothing is known of them but their ids.
     pub fn new(list: &ServoList) -> Self {
-        let unknown = Servo {
-            id: 0,
-            delay: ReturnDelay::FACTORY,
-            mode: ServoMode::Unknown,
-            position: Position::CENTRE,
-            unanswered: u8::MAX,
-            armed: false,
-            registers: Registers::Unread,
-            is_read_whole: false,
-            goal: Position::CENTRE,
-        };
-        let mut servos = [unknown; SERVOS];
-        (servos.iter_mut().zip(list.ids())).for_each(|(servo, id)| servo.id = *id);
-        let mut order = [0; SERVOS];
-        (order.iter_mut().zip(0..)).for_each(|(slot, place)| *slot = place);
-        Servos {
-            servos,
-            order,
-            count: list.ids().len() as u8,
-            positions: Positions::pack([Position::CENTRE.0; SERVOS]),
+        let mut new = Servos {
+            servos: [Servo::unknown(0); SERVOS],
+            order: [0; SERVOS],
+            count: 0,
+            positions: Positions::default(),
             asked: 0,
             housekeeping_from: 0,
-            housekeeping_second: if list.ids().len() > 1 { 1 } else { 0 },
+            housekeeping_second: 0,
             housekeeping: [round::SILENT; 2],
             supply: None,
-            lowest: Supply(u8::MAX),
+            lowest: PART_OF_A_ROUND,
             rounds: 0,
             tripped: None,
             has_torque: false,
             limits: ArmLimits::NONE,
-        }
+        };
+        new.start_over(list);
+        new
     }
 
-    /// Forgets all but the ids of this list. Apart, so that what calls it does not hold a second
-    /// one on the stack.
+    /// Forgets all but the ids of this list. In place: the stack has no room for another one.
     #[inline(never)]
     pub fn start_over(&mut self, list: &ServoList) {
-        *self = Servos::new(list);
+        let ids = list.ids();
+        for (place, servo) in self.servos.iter_mut().enumerate() {
+            *servo = Servo::unknown(ids.get(place).copied().unwrap_or(0));
+        }
+        (self.order.iter_mut().zip(0..)).for_each(|(slot, place)| *slot = place);
+        self.count = ids.len() as u8;
+        (0..SERVOS).for_each(|place| self.positions.set(place, Position::CENTRE.0));
+        self.asked = 0;
+        self.housekeeping_from = 0;
+        self.housekeeping_second = u8::from(self.count > 1);
+        self.housekeeping = [round::SILENT; 2];
+        self.supply = None;
+        self.lowest = Supply(u8::MAX);
+        self.rounds = 0;
+        self.tripped = None;
+        self.has_torque = false;
+        self.limits = ArmLimits::NONE;
     }
 
     /// Reads these two last, the second of them after the first; the others in the list's order.
@@ -225,16 +263,13 @@ impl Servos {
     pub fn ask_again(&mut self) {
         for servo in self.all_mut() {
             servo.mode = ServoMode::Unknown;
+            servo.mode_misses = 0;
         }
     }
 
     /// Whether all that would be armed now have said their mode.
     pub fn modes_are_known(&self) -> bool {
-        let unknown = |servo: &Servo| servo.mode == ServoMode::Unknown;
-        !self
-            .all()
-            .iter()
-            .any(|servo| servo.was_heard_lately() && unknown(servo))
+        !self.all().iter().any(Servo::owes_mode)
     }
 
     /// Those that did not answer in this tick: a bit each.

@@ -8,7 +8,7 @@ use super::{App, Goal, Onset, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
 use crate::bus;
-use crate::design::{ARMING_TICKS, CALM_TICKS, LOW_SUPPLY};
+use crate::design::{ARMING_TICKS, CALM_TICKS, INSIST_US, LOW_SUPPLY};
 use handstand_shared::message::{ArmLimits, Refusal};
 
 /// Arming that has begun.
@@ -66,8 +66,10 @@ impl App {
         if let Some(arming) = &mut self.arming {
             let is_speed = arming.ticks & 1 != 0;
             arming.ticks += 1;
-            // Torque off may have been said just before.
-            bus::pause(board);
+            if self.off.us() < INSIST_US {
+                // Torque off was said just before.
+                bus::pause(board);
+            }
             self.servos.write_limits(board, is_speed);
         }
     }
@@ -76,10 +78,13 @@ impl App {
     #[inline(never)]
     pub(super) fn finish_arming<B: Board>(&mut self, board: &mut B) {
         let Some(arming) = self.arming else { return };
-        let outcome = if !self.servos.have_limits() {
+        if !self.servos.have_limits() {
             if arming.ticks < ARMING_TICKS {
                 return;
             }
+            self.servos.leave_out_unread();
+        }
+        let outcome = if !self.servos.have_limits() {
             Err(Refusal::Registers)
         } else if self.servos.gave_up().is_some() {
             Err(Refusal::ServoError)
@@ -116,8 +121,8 @@ impl App {
             self.onset = Onset::Balance;
             self.state = State::Balance(Torque::On);
         } else {
-            self.onset = Onset::Done;
-            self.servos.arm(board);
+            self.onset = Onset::Torque;
+            self.servos.hold(board);
             self.state = State::Stream(Torque::On);
         }
     }

@@ -26,7 +26,7 @@ impl App {
             .read(board, &mut self.statistics, started, meanwhile);
     }
 
-    /// Torque must stay off: says so ten times a second, for a servo may have missed it.
+    /// Torque must stay off: says so every eighth tick, for a servo may have missed it.
     pub(super) fn insist<B: Board>(&mut self, board: &mut B, started: u16) {
         if self.ticks & 7 == 0 {
             bus::torque_off(board);
@@ -39,6 +39,12 @@ impl App {
     pub(super) fn stream<B: Board>(&mut self, board: &mut B, started: u16) {
         if let Some(cause) = self.must_stop(started) {
             self.soften(board, cause, State::Stream);
+            return self.watch(board, started);
+        }
+        if self.onset == Onset::Torque {
+            // Goals were sent after the last tick: long enough ago for servos to obey both.
+            self.servos.switch_on(board);
+            self.onset = Onset::Done;
             return self.watch(board, started);
         }
         match self.goal {
@@ -105,7 +111,7 @@ impl App {
                 let next = self.servos.switch_on_half(board, from);
                 self.onset = next.map_or(Onset::Done, Onset::Others);
             }
-            Onset::Done => {}
+            Onset::Torque | Onset::Done => {}
         }
         self.balance.begin_update();
     }

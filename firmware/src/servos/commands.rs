@@ -46,7 +46,7 @@ impl Servos {
         self.has_torque = false;
         self.limits = limits;
         for servo in self.all_mut() {
-            servo.armed = servo.was_heard_lately();
+            servo.armed = servo.was_heard_lately() && servo.mode != ServoMode::Unknown;
             servo.registers = Registers::Unread;
         }
     }
@@ -72,13 +72,10 @@ impl Servos {
         armed.all(|servo| servo.registers == Registers::AsWritten)
     }
 
-    /// Torque on in those that are commanded, the goal where they stand.
-    pub fn arm<B: Board>(&mut self, board: &mut B) {
-        self.hold(board);
-        bus::pause(board);
-        self.switch_on(board);
+    /// Those whose registers could not be read are not commanded, as those that do not answer.
+    pub fn leave_out_unread(&mut self) {
         for servo in self.all_mut() {
-            servo.registers = Registers::Unread;
+            servo.armed &= [Registers::AsWritten, Registers::Differ].contains(&servo.registers);
         }
     }
 
@@ -98,6 +95,9 @@ impl Servos {
     pub fn switch_on<B: Board>(&mut self, board: &mut B) {
         self.write_to(board, Sent::TorqueOn, ALL, false, NO_SERVO);
         self.has_torque = true;
+        for servo in self.all_mut() {
+            servo.registers = Registers::Unread;
+        }
     }
 
     /// Torque on in those that are commanded of half of the servo list, from this place on. The

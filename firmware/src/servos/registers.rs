@@ -21,6 +21,8 @@ pub(super) enum Registers {
     AsWritten,
     /// They were written, or the servo was silent for a tick, since they were read.
     Unread,
+    /// They were read before torque was on, and are not what they were written.
+    Differ,
     /// The same after a silence of three ticks: it gets no goal before they were read.
     Withheld,
 }
@@ -30,6 +32,7 @@ impl Registers {
     pub fn after_silence(self, is_short: bool) -> Self {
         match (self, is_short) {
             (Registers::AsWritten | Registers::Unread, true) => Registers::Unread,
+            (Registers::Differ, true) => Registers::Differ,
             (Registers::Withheld, _) | (_, false) => Registers::Withheld,
         }
     }

@@ -22,9 +22,9 @@ const WITH_TORQUE: u8 = bus::MOST_READ as u8;
 const _: () =
     assert!(TORQUE_ENABLE.address + WITH_TORQUE == PRESENT_POSITION.address + ALL_CHANNELS);
 
-/// Servos whose registers are read in one tick beside that one's: 12 bytes more of each take 480 us,
-/// so that 18 are read in five ticks.
-const MOST_UNREAD: u8 = 4;
+/// Servos whose registers are read in one tick beside that one's: 12 bytes more of each take 240 us,
+/// so that 18 are read in nine ticks.
+const MOST_UNREAD: u8 = 2;
 
 /// Bytes from the return delay on that hold both angle limits too: 0 in a servo that turns without
 /// end.
@@ -287,6 +287,8 @@ impl Servos {
                 [0, 0, 0, 0] => ServoMode::Wheel,
                 _ => ServoMode::Joint,
             };
+        } else {
+            servo.miss_mode();
         }
     }
 }
@@ -307,6 +309,8 @@ impl Servo {
                 self.goal = self.position;
             }
             self.registers = Registers::AsWritten;
+        } else if self.armed && !has_torque {
+            self.registers = Registers::Differ;
         }
         is_as_written
     }

@@ -50,7 +50,7 @@ fn a_servo_whose_answer_is_lost_as_torque_comes_on_has_it_too() {
         if has_torque {
             cm5.bus().servo(4).unwrap().faults.drop = 0.0;
         }
-        say(&mut cm5, &Command::KeepAlive, 100);
+        say(&mut cm5, &Command::KeepAlive, 180);
         assert_eq!(cm5.app.condition(), Condition::StreamArmed);
         let servo = cm5.bus().servo(4).unwrap();
         assert_eq!(

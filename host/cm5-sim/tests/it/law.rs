@@ -236,7 +236,7 @@ fn compare(cm5: &mut VirtualCm5, plan: &Plan, random: &mut ChaCha8Rng) -> usize 
     cm5.send(&arm_with(token));
     // It arrives while a tick is under way, and is obeyed after it; torque comes on when the servos
     // have said their limits.
-    for _ in 0..10 {
+    for _ in 0..30 {
         cm5.run_ms(10.0);
         if cm5.app.is_armed() {
             break;

@@ -247,6 +247,32 @@ fn a_servo_whose_mode_is_not_known_is_not_armed_with() {
     assert_eq!(ask(&mut cm5, &arm), Some(Ok(())));
 }
 
+/// Two servos of one id are never heard whole for long: they are left out, and the others armed.
+#[test]
+fn two_servos_of_one_id_are_left_out() {
+    let mut cm5 = VirtualCm5::new();
+    *cm5.bus() = handstand_cm5_sim::Bus::new((1..=18).chain([5]));
+    let token = ready(&mut cm5);
+    assert_eq!(
+        ask(
+            &mut cm5,
+            &Command::Arm {
+                token,
+                limits: LIMITS
+            }
+        ),
+        Some(Ok(()))
+    );
+    for servo in &cm5.bus().servos {
+        assert_eq!(
+            servo.torque_is_on(),
+            servo.id() != 5,
+            "servo {}",
+            servo.id()
+        );
+    }
+}
+
 /// Speeds are commands of wheels; to a joint 0 would be no limit.
 #[test]
 fn speeds_are_no_limits_of_joints() {

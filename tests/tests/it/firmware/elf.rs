@@ -153,6 +153,16 @@ fn the_elf_lets_the_robot_down_when_a_servo_gives_up() {
     }
 }
 
+/// Each servo at a phase of its own; the logic in process is tried at all of them.
+#[test]
+fn the_elf_notices_a_servo_that_restarts() {
+    let built = built();
+    let mut rig = ElfCm5::new(&built.elf).unwrap();
+    for id in 1..=18 {
+        a_restart_is_noticed(&mut rig, id, id - 1);
+    }
+}
+
 #[test]
 fn the_elf_bears_two_servos_of_one_id() {
     let built = built();

@@ -18,7 +18,8 @@ use handstand_tests::bench::*;
 fn refused(rig: &mut VirtualCm5, command: Command) -> Option<Refusal> {
     rig.clear();
     let sequence = rig.send(&command);
-    rig.run_ms(30.0);
+    // Torque comes on when all servos have said their limits.
+    rig.run_ms(180.0);
     rig.reports()
         .into_iter()
         .find_map(|(_, report)| match report {

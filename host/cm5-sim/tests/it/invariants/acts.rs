@@ -12,9 +12,9 @@ use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::plan::Plan;
 
-/// A frame that arrives during a tick is taken at its end, and arming lasts 20 ticks of up to 18 ms:
+/// A frame that arrives during a tick is taken at its end, and arming lasts 30 ticks of up to 18 ms:
 /// torque comes on so much later at most, ms.
-pub(super) const TAKEN_MS: f64 = 25.0 + 20.0 * 18.0;
+pub(super) const TAKEN_MS: f64 = 25.0 + 30.0 * 18.0;
 
 impl Judged {
     pub(super) fn step(&mut self, step: &Step) {
@@ -186,7 +186,7 @@ impl Judged {
             self.run(8.0);
         }
         self.arm(Token::Last, ArmLimits::FULL);
-        for _ in 0..30 {
+        for _ in 0..50 {
             if self.cm5.app.is_armed() {
                 break;
             }

@@ -86,7 +86,7 @@ fn torque_off_and_on_again_between_two_looks_is_a_new_arming() {
         Step::Mode(Mode::Stream),
         Step::Wait(70.0),
         Step::Arm(Token::Last, ArmLimits::FULL),
-        Step::Wait(100.0),
+        Step::Wait(150.0),
     ];
     for step in &steps {
         judged.step(step);
