@@ -296,8 +296,9 @@ impl App {
                 self.fade(board, cause, State::Balance);
             }
         }
-        self.finish_arming(board);
         self.account(board, due);
+        // Between ticks, as commands: what it takes shows where it makes the next tick late.
+        self.finish_arming(board);
     }
 
     /// When this tick was due: ticks that begin late are late for the servos, however short they

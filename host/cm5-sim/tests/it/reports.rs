@@ -317,3 +317,37 @@ fn no_servo_is_asked_again_too_late() {
         assert_eq!(after.retries - before.retries, asked_again, "{delay}");
     }
 }
+
+/// What is done between ticks makes them late, however short they are themselves.
+#[test]
+fn ticks_that_begin_late_are_overruns() {
+    let mut cm5 = VirtualCm5::new();
+    let token = greet(&mut cm5).token;
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    say(&mut cm5, &Command::KeepAlive, 300);
+    assert_eq!(telemetry(&mut cm5).overruns, 0);
+    cm5.board.byte_ns = 500_000;
+    for _ in 0..30 {
+        (0..3).for_each(|_| drop(cm5.send(&Command::KeepAlive)));
+        cm5.run_ms(10.0);
+    }
+    // What is left is taken at once.
+    cm5.board.byte_ns = 0;
+    cm5.clear();
+    cm5.send(&arm_with(token));
+    cm5.run_ms(60.0);
+    let refused = cm5
+        .reports()
+        .into_iter()
+        .find_map(|(_, report)| match report {
+            Report::Answer(answer) => Some(answer.outcome),
+            _ => None,
+        });
+    assert_eq!(refused, Some(Err(Refusal::Overrun)));
+    let told = telemetry(&mut cm5);
+    assert!(told.overruns > 5, "{told:?}");
+    assert!(told.longest_tick_us > 10_000, "{told:?}");
+    // On time again, it arms.
+    say(&mut cm5, &Command::KeepAlive, 150);
+    assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
+}

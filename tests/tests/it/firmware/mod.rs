@@ -19,13 +19,20 @@ fn refused(rig: &mut VirtualCm5, command: Command) -> Option<Refusal> {
     rig.clear();
     let sequence = rig.send(&command);
     // Torque comes on when all servos have said their limits.
-    rig.run_ms(180.0);
-    rig.reports()
-        .into_iter()
-        .find_map(|(_, report)| match report {
-            Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome.err()),
-            _ => None,
-        })?
+    for _ in 0..60 {
+        rig.run_ms(10.0);
+        let answer = rig
+            .reports()
+            .into_iter()
+            .find_map(|(_, report)| match report {
+                Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome.err()),
+                _ => None,
+            });
+        if let Some(outcome) = answer {
+            return outcome;
+        }
+    }
+    None
 }
 
 /// Greets it.
