@@ -157,8 +157,9 @@ impl Judged {
 
     /// Whether the servo may not have been read yet since it was disturbed last, or is not read.
     pub(super) fn is_disturbed(&self, at: usize) -> bool {
-        // Two rounds of the housekeeping of these servos are 60 ms, ticks last up to 18 ms.
-        const READ_MS: f64 = 150.0;
+        // Each is read in every second round of the housekeeping: of 18 servos, most of which are
+        // silent, those are 18 ticks of up to 18 ms.
+        const READ_MS: f64 = 350.0;
         let faults = &self.cm5.board.bus.servos[at].faults;
         let is_unsure = faults.corrupt_request + faults.stray + faults.late > 0.0;
         let is_new = self.cm5.now_ms() - self.disturbed_ms[at] < READ_MS;
