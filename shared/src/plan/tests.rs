@@ -116,7 +116,8 @@ fn a_plan_survives_its_bytes_and_others_are_refused() {
             }
         }
     }
-    let spoilt: [(&str, fn(&mut Plan)); 9] = [
+    type Spoil = fn(&mut Plan);
+    let spoilt: [(&str, Spoil); 9] = [
         ("own mirror", |plan| {
             plan.joints[0].mirror = plan.joints[0].id
         }),
