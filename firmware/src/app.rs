@@ -3,7 +3,7 @@
 use crate::age::Age;
 use crate::balance::Balance;
 use crate::board::Board;
-use crate::design::{INSIST_US, START_TICKS};
+use crate::design::{CLOCK_PER_US, INSIST_US, START_TICKS, TICK_US};
 use crate::fault_log::FaultLog;
 use crate::filter::{Filter, Way};
 use crate::link::Link;
@@ -22,6 +22,7 @@ mod modes;
 mod soft_stop;
 mod state;
 
+use arming::Arming;
 pub use state::{State, Torque};
 
 /// What the host wants of the servos.
@@ -43,6 +44,8 @@ enum Onset {
     Goals(u8),
     /// The others have torque, too, half of the list from this place on.
     Others(u8),
+    /// While streaming all have their goals, and get torque in the next tick.
+    Torque,
     /// All have it.
     Done,
 }
@@ -78,32 +81,40 @@ pub struct App {
     life: Age,
     /// The longest of it since arming, ms.
     longest_silence_ms: u16,
-    /// When nothing from the PC was left to be taken: later than this, what is taken now arrived.
-    emptied: u16,
+    /// Since nothing from the PC was left to be taken: what is taken now arrived later.
+    emptied: Age,
     /// Since torque was switched off; old where somebody else may have switched it on.
     off: Age,
     /// Since the torque limit began to fall.
     fading: Age,
+    /// Arming that has begun: the limits are written and read back before torque comes on.
+    arming: Option<Arming>,
     /// What arming brought.
     limits: ArmLimits,
     /// How far torque has come on while balancing.
     onset: Onset,
     /// Ticks since one was too long.
     calm: u8,
-    /// Rounds in a row with a low supply, and the round last looked at.
-    low: (u8, u8),
+    /// Since a round of the housekeeping told of a low supply, if every one has since then.
+    low: Option<Age>,
     overruns: u16,
     tick_us: u16,
     longest_tick_us: u16,
     longest_law_us: u16,
     /// The gyro's code as it is reported: when the tick began, or what the law took.
     gyro: u16,
+    /// When the next tick is due, in counts of the clock; none before the first.
+    due: Option<u16>,
     /// Whether it has looked for a plan.
     has_looked: bool,
+    /// Whether the plan it has is the one in EEPROM, and not the one compiled in.
+    is_stored: bool,
 }
 
 impl App {
     /// Torque off first of all, then everything else. A watchdog's reset is a fault.
+    // Apart from `main`, whose frame is there for ever: what is needed to start is not.
+    #[inline(never)]
     pub fn boot<B: Board>(board: &mut B) -> Self {
         bus::torque_off_at_start(board);
         let state = if board.reset_cause().is_watchdog() {
@@ -133,19 +144,22 @@ impl App {
             ticks: 0,
             life: Age::NEVER,
             longest_silence_ms: 0,
-            emptied: board.clock(),
+            emptied: Age::from(board.clock()),
             off: Age::from(board.clock()),
             fading: Age::NEVER,
+            arming: None,
             limits: ArmLimits::NONE,
             onset: Onset::Done,
             calm: 0,
-            low: (0, 0),
+            low: None,
             overruns: 0,
             tick_us: 0,
             longest_tick_us: 0,
             longest_law_us: 0,
             gyro: 0,
+            due: None,
             has_looked: false,
+            is_stored: false,
         }
     }
 
@@ -179,6 +193,7 @@ impl App {
             }
             self.load_plan(board);
         }
+        self.pass(board.clock());
         self.pump(board);
         if board.tick_due() {
             // Here and nowhere else: only ticks that come and end prove that the firmware is alive.
@@ -194,10 +209,13 @@ impl App {
         // Bounded, so that a babbling line cannot starve the tick.
         for _ in 0..64 {
             let Some(byte) = board.link_receive() else {
-                self.emptied = board.clock();
+                self.emptied = Age::from(board.clock());
                 break;
             };
-            self.take(board, byte);
+            // What reads EEPROM or looks at the stack takes long: one of them, then the tick.
+            if self.take(board, byte) {
+                break;
+            }
         }
         if self.state == State::Bridge {
             for _ in 0..64 {
@@ -209,22 +227,28 @@ impl App {
         }
     }
 
+    /// Takes a byte from the PC; whether it completed a command that takes long.
     #[inline(never)]
-    fn take<B: Board>(&mut self, board: &mut B, byte: u8) {
+    fn take<B: Board>(&mut self, board: &mut B, byte: u8) -> bool {
         if self.state == State::Bridge && self.filter.push(byte) == Way::Bus {
             // What was being said when the controller restarted switches no torque on.
             if self.ticks >= START_TICKS {
                 self.off = Age::NEVER;
                 board.bus_send(&[byte]);
             }
-            return;
+            return false;
         }
         if byte == 0 && !self.link.is_idle() {
             self.filter.end_frame();
         }
-        if let Some(command) = self.link.push(byte, &mut self.statistics) {
-            self.obey(board, command);
-        }
+        let Some(command) = self.link.push(byte, &mut self.statistics) else {
+            return false;
+        };
+        let is_long = !command.message.is_life();
+        self.obey(board, command);
+        // Ages wrap if nothing brings them up to date for long.
+        self.pass(board.clock());
+        is_long
     }
 
     /// Everything that happens once per period.
@@ -233,6 +257,7 @@ impl App {
     #[inline(never)]
     pub fn tick<B: Board>(&mut self, board: &mut B) {
         let started = board.clock();
+        let due = self.due_before(started);
         self.ticks = self.ticks.wrapping_add(1);
         self.pass(started);
         self.panel(board);
@@ -246,9 +271,10 @@ impl App {
             if is_new {
                 self.load_plan(board);
             }
-            self.stored(board, sequence);
+            self.answer(board, sequence, Ok(()));
         }
         self.faults.tick(board);
+        self.write_limits(board);
         match self.state {
             State::Bridge => {}
             State::Stream(Torque::Off) => self.watch(board, started),
@@ -260,16 +286,37 @@ impl App {
             State::Fault(_) => self.insist(board, started),
             State::Stream(Torque::On) => self.stream(board, started),
             State::Balance(Torque::On) => self.balance(board, started),
+            // Readings first: a new torque limit would clear what a servo that gave up says.
             State::Stream(Torque::Fading { cause }) => {
-                self.fade(board, cause, State::Stream);
                 self.watch(board, started);
+                self.fade(board, cause, State::Stream);
             }
             State::Balance(Torque::Fading { cause }) => {
-                self.fade(board, cause, State::Balance);
                 self.watch(board, started);
+                self.fade(board, cause, State::Balance);
             }
         }
-        self.account(board, started);
+        self.account(board, due);
+        // Between ticks, as commands: what it takes shows where it makes the next tick late.
+        self.finish_arming(board);
+    }
+
+    /// When this tick was due: ticks that begin late are late for the servos, however short they
+    /// are. The earliest phase counts; one that was skipped is an overrun.
+    fn due_before(&mut self, started: u16) -> u16 {
+        const PERIOD: u16 = TICK_US * CLOCK_PER_US;
+        let mut due = self.due.unwrap_or(started);
+        // More than half of the clock's range late is early.
+        while started.wrapping_sub(due) < 0x8000 && started.wrapping_sub(due) >= PERIOD {
+            due = due.wrapping_add(PERIOD);
+            self.overruns = self.overruns.saturating_add(1);
+            self.calm = 0;
+        }
+        if started.wrapping_sub(due) >= 0x8000 {
+            due = started;
+        }
+        self.due = Some(due.wrapping_add(PERIOD));
+        due
     }
 
     /// Time passes.
@@ -279,8 +326,12 @@ impl App {
             &mut self.attitude_age,
             &mut self.off,
             &mut self.fading,
+            &mut self.emptied,
         ] {
             age.pass(clock);
+        }
+        if let Some(low) = &mut self.low {
+            low.pass(clock);
         }
         if self.is_armed() {
             let silence_ms = u16::try_from(self.life.us() / 1000).unwrap_or(u16::MAX);
@@ -293,6 +344,7 @@ impl App {
     fn load_plan<B: Board>(&mut self, board: &mut B) {
         let stored = self.writer.newest();
         let is_loaded = stored.is_some_and(|stored| self.balance.load(stored.bytes(board)));
+        self.is_stored = is_loaded;
         if !is_loaded {
             self.balance
                 .load((0..).map_while(|at| board.compiled_plan(at)));

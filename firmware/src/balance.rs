@@ -1,5 +1,6 @@
 //! Balancing on board: one tick of reading, law and command.
 
+use crate::design::{POSE_ANGLE, POSE_RATE};
 use crate::servos::{Servo, Servos};
 use handstand_shared::crc::extend32;
 use handstand_shared::fixed::saturate;
@@ -41,6 +42,7 @@ pub struct Balance {
     rate: i16,
     /// The gyro's code at rest, times 2^16: the mean of those before arming.
     zero: i32,
+    rest: attitude::Rest,
     /// Which readings are new.
     is_heard: [bool; READINGS],
     missed: u8,
@@ -73,6 +75,7 @@ impl Balance {
         angle: 0,
         rate: 0,
         zero: 0,
+        rest: attitude::Rest::NONE,
         is_heard: [false; READINGS],
         missed: 0,
         before: [(0, NEVER_HEARD); 2],
@@ -170,10 +173,14 @@ impl Balance {
         self.plan.joints.iter().all(are_wheels)
     }
 
-    /// Whether the driven joints are near the operating point.
+    /// Whether all links are near the operating point, and the first one turns slowly.
     pub fn is_posed(&self, readings: &[i16; READINGS]) -> bool {
-        let both = readings.iter().zip(self.point());
-        both.skip(1).all(|(q, x)| q.abs_diff(x) <= POSE_CODES)
+        let [angle, q2, q3, rate] = *readings;
+        let [x1, x2, x3] = self.point();
+        angle.abs_diff(x1) <= POSE_ANGLE
+            && rate.unsigned_abs() <= POSE_RATE
+            && q2.abs_diff(x2) <= POSE_CODES
+            && q3.abs_diff(x3) <= POSE_CODES
     }
 
     /// Begins to estimate from these readings.

@@ -50,6 +50,12 @@ pub trait Board {
         used
     }
 
+    /// Lets this time pass once all is sent to the servos, us.
+    fn wait(&mut self, us: u16) {
+        let began = self.clock();
+        while since_us(self, began) < us {}
+    }
+
     /// Forgets bytes from the servos that nobody took.
     fn bus_flush(&mut self);
 

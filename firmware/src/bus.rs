@@ -4,7 +4,7 @@
 //! it.
 
 use crate::board::Board;
-use crate::design::{ANSWER_US, BETWEEN_BYTES_US, FIRST_BYTE_US, FLUSH_BYTES};
+use crate::design::{ANSWER_US, BETWEEN_BYTES_US, BETWEEN_WRITES_US, FIRST_BYTE_US, FLUSH_BYTES};
 use handstand_shared::control_table::{Register, TORQUE_ENABLE};
 use handstand_shared::dynamixel::{
     BROADCAST, ErrorBits, OVERHEAD, Request, WHOLE_SUM, check_byte, sync_write_head,
@@ -51,6 +51,29 @@ pub fn hear<B: Board>(board: &mut B, count: u8, delay: ReturnDelay, answer: &mut
     let whole = (OVERHEAD + usize::from(count)).min(answer.bytes.len());
     let out = answer.bytes.get_mut(..whole).unwrap_or(&mut []);
     answer.used = board.bus_hear(out, first_us, BETWEEN_BYTES_US, ANSWER_US) as u8;
+    if !matches!(answer.bytes, [0xff, 0xff, ..]) {
+        find_header(board, whole, answer);
+    }
+}
+
+/// Moves an answer behind a stray byte, as a line that turns round may give, to where it belongs,
+/// and takes the rest of it.
+#[cold]
+#[inline(never)]
+fn find_header<B: Board>(board: &mut B, whole: usize, answer: &mut Answer) {
+    let used = usize::from(answer.used);
+    let heard = answer.bytes.get(..used).unwrap_or(&[]);
+    let Some(stray) = heard.windows(2).position(|pair| pair == [0xff, 0xff]) else {
+        return;
+    };
+    let from = answer.bytes;
+    let kept = from.get(stray..used).unwrap_or(&[]);
+    (answer.bytes.iter_mut().zip(kept)).for_each(|(slot, byte)| *slot = *byte);
+    let kept = kept.len();
+    if let Some(rest) = answer.bytes.get_mut(kept..whole) {
+        let more = board.bus_hear(rest, BETWEEN_BYTES_US, BETWEEN_BYTES_US, ANSWER_US);
+        answer.used = (kept + more) as u8;
+    }
 }
 
 /// The `N` registers in an answer, if it is one of this servo, whole and undamaged.
@@ -113,10 +136,17 @@ pub fn torque_off_at_start<B: Board>(board: &mut B) {
     torque_off(board);
 }
 
-/// Torque off, everywhere. Twice, for nobody answers a broadcast.
+/// Torque off, everywhere. Twice, for nobody answers a broadcast, and a servo that was just written
+/// ignores the first.
 pub fn torque_off<B: Board>(board: &mut B) {
     write_all(board, TORQUE_ENABLE, 0);
+    pause(board);
     write_all(board, TORQUE_ENABLE, 0);
+}
+
+/// Waits as long as a servo may need to obey a write: it ignores one that comes before.
+pub fn pause<B: Board>(board: &mut B) {
+    board.wait(BETWEEN_WRITES_US);
 }
 
 /// Writes a value of its own to a register of each of `servos` servos, in one packet, which goes

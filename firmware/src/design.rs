@@ -25,6 +25,15 @@ pub const BETWEEN_BYTES_US: u16 = 250;
 /// of 130 us. Noise that goes on and on ends here.
 pub const ANSWER_US: u16 = 800;
 
+/// From a write to the one behind it, us, where both must be obeyed: servos ignore one that comes
+/// too close. What they need is not published; bring-up measures it.
+pub const BETWEEN_WRITES_US: u16 = 200;
+
+/// Ticks in which the limits that arming names are written, in turn, and read back: 18 servos are
+/// read in nine. Beyond, a servo that could not be read is left out, and one that does not hold them
+/// refused.
+pub const ARMING_TICKS: u8 = 30;
+
 /// No servo is asked later than this in a tick, us. 18 servos with the factory's return delay take
 /// 13.2 ms. The last answer may take 500 + [`FIRST_BYTE_US`] + [`ANSWER_US`] more, commands and the
 /// report 1.5 ms: a tick ends within 18 ms.
@@ -64,9 +73,31 @@ pub const CALM_TICKS: u8 = 10;
 /// Below this supply arming is refused; 8 NiMH cells are empty at about 1.1 V each.
 pub const LOW_SUPPLY: handstand_shared::raw::Supply = handstand_shared::raw::Supply(88);
 
-/// Rounds of the housekeeping with a low supply before an armed robot is let down: 3 x 90 ms. A
-/// single dip under load is normal.
-pub const LOW_ROUNDS: u8 = 3;
+/// So long a supply must be low before an armed robot is let down, us, from the end of the first
+/// round of the housekeeping that tells it. A single dip under load is normal, and a round lasts as
+/// long as the servo list: 10 to 90 ms.
+pub const LOW_SUPPLY_US: u32 = 200_000;
+
+/// The gyro's ADC codes this near an end are no rate: the pad is not connected, or the rate is
+/// beyond what it measures.
+pub const GYRO_RAIL_CODES: u16 = 8;
+
+/// Furthest from the plan's zero that a gyro's code may be at rest, codes: 0.24 V of 5 V.
+pub const GYRO_ZERO_CODES: u16 = 50;
+
+/// Ticks in a row in which the gyro must have been at rest before balancing: 100 ms.
+pub const REST_TICKS: u8 = 10;
+
+/// Largest change of the gyro's rate in these ticks, steps of 1e-3 rad/s: who holds the robot moves
+/// it no faster. A code more is noise of the ADC's.
+pub const REST_RATE: u16 = 350;
+
+/// Furthest from its operating point that the first link may be at arming, 1e-4 rad: 10 degrees, as
+/// the joints.
+pub const POSE_ANGLE: u16 = 1745;
+
+/// Fastest that the first link may turn at arming, 1e-3 rad/s.
+pub const POSE_RATE: u16 = 1000;
 
 /// Largest change of a goal in one tick, codes: 20 x 0.293 degrees x 100 Hz = 586 degrees/s, more
 /// than a servo's 354, so it holds nothing back that could be obeyed, and bounds what a wrong goal

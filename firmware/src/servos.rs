@@ -1,15 +1,27 @@
 //! The servos as a group: who they are, where they are, and what they last said.
 
 use handstand_shared::dynamixel::ErrorBits;
-use handstand_shared::message::{Cause, Housekeeping, ServoList, TrippedServo};
+use handstand_shared::message::{ArmLimits, Cause, Housekeeping, ServoList, TrippedServo};
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::raw::{Position, ReturnDelay, Supply};
 
 mod commands;
+mod mode;
+mod registers;
 mod round;
+
+use mode::ServoMode;
+use registers::Registers;
 
 /// Error bits of a servo that drops its torque, or is about to.
 const GAVE_UP: u8 = ErrorBits::OVERLOAD.0 | ErrorBits::OVERHEAT.0;
+
+/// Requests in a row that a servo may leave unanswered and is commanded all the same. Three ticks.
+const MOST_UNANSWERED: u8 = 4;
+
+/// Answers that a servo may miss until its mode is known and is waited for all the same: with a
+/// fifth of them lost, eight are 1 in 400,000.
+const MOST_MODE_MISSES: u8 = 8;
 
 /// The lowest supply of a round that is not heard whole: none.
 const PART_OF_A_ROUND: Supply = Supply(0);
@@ -21,8 +33,10 @@ pub struct Servo {
     pub id: u8,
     /// Its return delay; the factory's until it was asked.
     delay: ReturnDelay,
-    /// Whether it turns without end; none until it was asked.
-    is_wheel: Option<bool>,
+    /// Unknown until it was asked.
+    mode: ServoMode,
+    /// Answers it did not give since its mode was asked for; counted until it is known.
+    mode_misses: u8,
     /// Where it was when it last answered.
     pub position: Position,
     /// Requests in a row that it did not answer: two in the first tick in which it is silent, then
@@ -30,21 +44,69 @@ pub struct Servo {
     unanswered: u8,
     /// Whether it is commanded.
     pub armed: bool,
+    /// Whether its registers were read, and are as they were written.
+    registers: Registers,
+    /// Whether they are read in this tick.
+    is_read_whole: bool,
     /// The goal it was last sent.
     pub goal: Position,
 }
 
 impl Servo {
+    /// Of which nothing but its id is known.
+    fn unknown(id: u8) -> Self {
+        Servo {
+            id,
+            delay: ReturnDelay::FACTORY,
+            mode: ServoMode::Unknown,
+            mode_misses: 0,
+            position: Position::CENTRE,
+            unanswered: u8::MAX,
+            armed: false,
+            registers: Registers::Unread,
+            is_read_whole: false,
+            goal: Position::CENTRE,
+        }
+    }
+
     /// Whether it answered in this tick.
     pub fn is_present(&self) -> bool {
         self.unanswered == 0
     }
 
     fn hear(&mut self, has_answered: bool) {
-        self.unanswered = match has_answered {
-            true => 0,
-            false => self.unanswered.saturating_add(1),
-        };
+        if has_answered {
+            self.unanswered = 0;
+        } else {
+            self.unanswered = self.unanswered.saturating_add(1);
+            self.registers = self.registers.after_silence(self.was_heard_lately());
+            self.miss_mode();
+        }
+    }
+
+    /// Whether it answered in one of the last three ticks: an answer that is lost as torque comes
+    /// on would leave a joint to one of its two servos.
+    fn was_heard_lately(&self) -> bool {
+        self.unanswered <= MOST_UNANSWERED
+    }
+
+    fn miss_mode(&mut self) {
+        if self.mode == ServoMode::Unknown {
+            self.mode_misses = self.mode_misses.saturating_add(1);
+        }
+    }
+
+    /// Whether it would be commanded if only its mode were known. Two servos of one id never say
+    /// it: they are left out.
+    fn owes_mode(&self) -> bool {
+        let is_unknown = self.mode == ServoMode::Unknown;
+        is_unknown && self.was_heard_lately() && self.mode_misses < MOST_MODE_MISSES
+    }
+
+    /// Whether it gets goals: one that was silent for longer has its torque off, or another goal,
+    /// until it was read.
+    fn takes_goals(&self) -> bool {
+        self.armed && self.registers != Registers::Withheld
     }
 }
 
@@ -57,7 +119,7 @@ pub struct Servos {
     count: u8,
     /// Their positions, as they are reported.
     pub positions: Positions,
-    /// Place of the servo that is asked next for its return delay and mode.
+    /// Place of the servo that was asked last for its return delay and mode.
     asked: u8,
     /// Place of the first servo whose housekeeping are read in this tick.
     pub housekeeping_from: u8,
@@ -74,46 +136,53 @@ pub struct Servos {
     pub tripped: Option<TrippedServo>,
     /// Whether torque was switched on in all that are commanded.
     has_torque: bool,
+    /// What those that are commanded were written.
+    limits: ArmLimits,
 }
 
 impl Servos {
     /// Nothing is known of them but their ids.
     pub fn new(list: &ServoList) -> Self {
-        let unknown = Servo {
-            id: 0,
-            delay: ReturnDelay::FACTORY,
-            is_wheel: None,
-            position: Position::CENTRE,
-            unanswered: u8::MAX,
-            armed: false,
-            goal: Position::CENTRE,
-        };
-        let mut servos = [unknown; SERVOS];
-        (servos.iter_mut().zip(list.ids())).for_each(|(servo, id)| servo.id = *id);
-        let mut order = [0; SERVOS];
-        (order.iter_mut().zip(0..)).for_each(|(slot, place)| *slot = place);
-        Servos {
-            servos,
-            order,
-            count: list.ids().len() as u8,
-            positions: Positions::pack([Position::CENTRE.0; SERVOS]),
+        let mut new = Servos {
+            servos: [Servo::unknown(0); SERVOS],
+            order: [0; SERVOS],
+            count: 0,
+            positions: Positions::default(),
             asked: 0,
             housekeeping_from: 0,
-            housekeeping_second: if list.ids().len() > 1 { 1 } else { 0 },
+            housekeeping_second: 0,
             housekeeping: [round::SILENT; 2],
             supply: None,
-            lowest: Supply(u8::MAX),
+            lowest: PART_OF_A_ROUND,
             rounds: 0,
             tripped: None,
             has_torque: false,
-        }
+            limits: ArmLimits::NONE,
+        };
+        new.start_over(list);
+        new
     }
 
-    /// Forgets all but the ids of this list. Apart, so that what calls it does not hold a second
-    /// one on the stack.
+    /// Forgets all but the ids of this list. In place: the stack has no room for another one.
     #[inline(never)]
     pub fn start_over(&mut self, list: &ServoList) {
-        *self = Servos::new(list);
+        let ids = list.ids();
+        for (place, servo) in self.servos.iter_mut().enumerate() {
+            *servo = Servo::unknown(ids.get(place).copied().unwrap_or(0));
+        }
+        (self.order.iter_mut().zip(0..)).for_each(|(slot, place)| *slot = place);
+        self.count = ids.len() as u8;
+        (0..SERVOS).for_each(|place| self.positions.set(place, Position::CENTRE.0));
+        self.asked = 0;
+        self.housekeeping_from = 0;
+        self.housekeeping_second = u8::from(self.count > 1);
+        self.housekeeping = [round::SILENT; 2];
+        self.supply = None;
+        self.lowest = Supply(u8::MAX);
+        self.rounds = 0;
+        self.tripped = None;
+        self.has_torque = false;
+        self.limits = ArmLimits::NONE;
     }
 
     /// Reads these two last, the second of them after the first; the others in the list's order.
@@ -179,7 +248,7 @@ impl Servos {
     /// Whether the servo with this id was found to turn without end.
     pub fn is_wheel(&self, id: u8) -> bool {
         self.with_id(id)
-            .is_some_and(|servo| servo.is_wheel == Some(true))
+            .is_some_and(|servo| servo.mode == ServoMode::Wheel)
     }
 
     /// No supply is known before the end of a whole round of housekeeping: nothing was read in an
@@ -192,10 +261,15 @@ impl Servos {
 
     /// Asks all for their return delay and mode once more, one per tick.
     pub fn ask_again(&mut self) {
-        self.asked = 0;
         for servo in self.all_mut() {
-            servo.is_wheel = None;
+            servo.mode = ServoMode::Unknown;
+            servo.mode_misses = 0;
         }
+    }
+
+    /// Whether all that would be armed now have said their mode.
+    pub fn modes_are_known(&self) -> bool {
+        !self.all().iter().any(Servo::owes_mode)
     }
 
     /// Those that did not answer in this tick: a bit each.

@@ -24,6 +24,9 @@ pub use parts::{Gyro, Moment};
 /// Version of the bytes.
 pub const VERSION: u8 = 4;
 
+/// Largest departure of the first link, 1e-4 rad: beyond a right angle it hangs.
+const MOST_RANGE: u16 = 15_708;
+
 /// The plan for three links and two driven joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan {
@@ -171,7 +174,12 @@ impl Plan {
     }
 
     fn is_sound(&self) -> bool {
-        self.law.is_sound() && self.joints.iter().all(Joint::is_sound)
+        let [shoulder, hip] = &self.joints;
+        self.law.is_sound()
+            && self.joints.iter().all(Joint::is_sound)
+            && shoulder.is_apart_from(hip)
+            && self.gyro.is_sound()
+            && self.range <= MOST_RANGE
     }
 }
 

@@ -1,36 +1,140 @@
 //! When torque comes on.
+//!
+//! Torque limit and speeds travel in packets that no servo answers, and servos ignore a write that
+//! comes right behind another: they are written a tick apart, again and again until every servo that
+//! will be commanded has been read and holds them. Only then does torque come on.
 
 use super::{App, Goal, Onset, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
-use crate::design::{CALM_TICKS, LOW_SUPPLY};
+use crate::bus;
+use crate::design::{ARMING_TICKS, CALM_TICKS, INSIST_US, LOW_SUPPLY};
 use handstand_shared::message::{ArmLimits, Refusal};
 
+/// Arming that has begun.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arming {
+    /// Sequence number of the command to answer.
+    answer: u8,
+    limits: ArmLimits,
+    ticks: u8,
+}
+
 impl App {
-    /// Torque on, if everything speaks for it. A greeting serves once.
+    /// Begins to arm, if everything speaks for it. A greeting serves once.
     #[inline(never)]
     pub(super) fn arm<B: Board>(
         &mut self,
         board: &mut B,
+        answer: u8,
         token: u16,
         limits: ArmLimits,
     ) -> Result<(), Refusal> {
         if self.is_armed() {
             return Err(Refusal::Armed);
         }
+        // Said again, for its answer takes long.
+        if let Some(arming) = &mut self.arming
+            && (self.token, arming.limits) == (Some(token), limits)
+        {
+            arming.answer = answer;
+            return Ok(());
+        }
         match self.token {
             None => return Err(Refusal::Version),
             Some(right) if right != token || self.is_used => return Err(Refusal::Token),
             Some(_) => {}
         }
+        if !limits.is_sound() {
+            return Err(Refusal::Limits);
+        }
+        self.may_arm(board)?;
+        self.is_used = true;
+        self.servos.choose(limits);
+        let ticks = 0;
+        self.arming = Some(Arming {
+            answer,
+            limits,
+            ticks,
+        });
+        Ok(())
+    }
+
+    /// Writes a limit, in the ticks of arming; what was told to be off stays off by itself.
+    #[inline(never)]
+    pub(super) fn write_limits<B: Board>(&mut self, board: &mut B) {
+        if let Some(arming) = &mut self.arming {
+            let is_speed = arming.ticks & 1 != 0;
+            arming.ticks += 1;
+            if self.off.us() < INSIST_US {
+                // Torque off was said just before.
+                bus::pause(board);
+            }
+            self.servos.write_limits(board, is_speed);
+        }
+    }
+
+    /// Switches torque on once all limits were read back.
+    #[inline(never)]
+    pub(super) fn finish_arming<B: Board>(&mut self, board: &mut B) {
+        let Some(arming) = self.arming else { return };
+        if !self.servos.have_limits() {
+            if arming.ticks < ARMING_TICKS {
+                return;
+            }
+            self.servos.leave_out_unread();
+        }
+        let outcome = if !self.servos.have_limits() {
+            Err(Refusal::Registers)
+        } else if self.servos.gave_up().is_some() {
+            Err(Refusal::ServoError)
+        } else {
+            self.may_arm(board)
+        };
+        if let Err(refusal) = outcome {
+            // What it needs may be there the next time.
+            self.is_used = false;
+            self.servos.disarm(board);
+            return self.abandon_arming(board, refusal);
+        }
+        self.arming = None;
+        self.switch_on(board, arming.limits);
+        self.answer(board, arming.answer, Ok(()));
+    }
+
+    /// Answers arming that has begun and comes to nothing.
+    pub(super) fn abandon_arming<B: Board>(&mut self, board: &mut B, refusal: Refusal) {
+        if let Some(arming) = self.arming.take() {
+            self.answer(board, arming.answer, Err(refusal));
+        }
+    }
+
+    fn switch_on<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
+        self.goal = Goal::Hold;
+        self.low = None;
+        self.life = Age::from(board.clock());
+        self.longest_silence_ms = 0;
+        self.off = Age::NEVER;
+        self.limits = limits;
+        if let State::Balance(_) = self.state {
+            // Torque comes on with the law's first command.
+            self.onset = Onset::Balance;
+            self.state = State::Balance(Torque::On);
+        } else {
+            self.onset = Onset::Torque;
+            self.servos.hold(board);
+            self.state = State::Stream(Torque::On);
+        }
+    }
+
+    /// Whether torque may come on now, as far as can be known without a write.
+    #[inline(never)]
+    fn may_arm<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
         let is_balance = match self.state {
             State::Stream(_) => false,
             State::Balance(_) => true,
             State::Bridge | State::Fault(_) => return Err(Refusal::State),
         };
-        if !limits.is_sound() {
-            return Err(Refusal::Limits);
-        }
         // It would have to be let go and pressed again to stop the robot.
         if self.buttons.is_down() {
             return Err(Refusal::Button);
@@ -43,29 +147,12 @@ impl App {
         if self.calm < CALM_TICKS {
             return Err(Refusal::Overrun);
         }
+        if !self.servos.modes_are_known() {
+            return Err(Refusal::ServoMode);
+        }
         if is_balance {
             self.prepare_balance(board)?;
         }
-        self.is_used = true;
-        self.goal = Goal::Hold;
-        self.low = (0, self.servos.rounds);
-        self.life = Age::from(board.clock());
-        self.longest_silence_ms = 0;
-        self.off = Age::NEVER;
-        self.limits = limits;
-        self.onset = match is_balance {
-            true => Onset::Balance,
-            false => Onset::Done,
-        };
-        match is_balance {
-            // A servo that missed torque off has these limits from now on, too.
-            true => self.servos.choose(board, limits),
-            false => self.servos.arm(board, limits),
-        }
-        self.state = match is_balance {
-            true => State::Balance(Torque::On),
-            false => State::Stream(Torque::On),
-        };
         Ok(())
     }
 
@@ -81,6 +168,9 @@ impl App {
         }
         if !self.has_attitude(board) {
             return Err(Refusal::Attitude);
+        }
+        if !self.balance.is_at_rest() {
+            return Err(Refusal::Gyro);
         }
         self.balance.start();
         self.balance.sense(self.attitude, board.gyro());

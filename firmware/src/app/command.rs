@@ -1,7 +1,6 @@
 //! What each command of the host does.
 
 use super::{App, Goal, State, Torque};
-use crate::age::Age;
 use crate::board::Board;
 use crate::plan_store::MAX_TABLE;
 use handstand_shared::message::{
@@ -24,13 +23,23 @@ impl App {
     pub(super) fn obey<B: Board>(&mut self, board: &mut B, command: Numbered<Command>) {
         let Numbered { sequence, message } = command;
         if message.is_life() {
-            self.life = Age::from(self.emptied);
+            self.life = self.emptied;
         }
         let outcome = self.outcome(board, sequence, message);
         if let Outcome::Answer(outcome) = outcome {
-            let report = Report::Answer(Answer { sequence, outcome });
-            self.link.send(board, &report);
+            self.answer(board, sequence, outcome);
         }
+    }
+
+    #[inline(never)]
+    pub(super) fn answer<B: Board>(
+        &mut self,
+        board: &mut B,
+        sequence: u8,
+        outcome: Result<(), Refusal>,
+    ) {
+        let report = Report::Answer(Answer { sequence, outcome });
+        self.link.send(board, &report);
     }
 
     #[inline(never)]
@@ -51,10 +60,14 @@ impl App {
             Command::Speeds(speeds) => self.set_goal(sequence, Goal::Speeds(speeds)),
             Command::Attitude(attitude) => {
                 self.attitude = attitude;
-                self.attitude_age = Age::from(self.emptied);
+                self.attitude_age = self.emptied;
                 Outcome::Quiet
             }
-            Command::Arm { token, limits } => Outcome::Answer(self.arm(board, token, limits)),
+            Command::Arm { token, limits } => match self.arm(board, sequence, token, limits) {
+                // When torque comes on.
+                Ok(()) => Outcome::Later,
+                Err(refusal) => Outcome::Answer(Err(refusal)),
+            },
             Command::PlanChunk { offset, bytes } => match self.is_armed() {
                 true => Outcome::Answer(Err(Refusal::Armed)),
                 false => match self.writer.chunk(offset, &bytes, sequence) {
@@ -77,11 +90,12 @@ impl App {
         }
     }
 
-    /// A piece of the plan that counts: the one in EEPROM, else the one compiled in.
+    /// A piece of the plan it has: the one in EEPROM, or the one compiled in.
     #[inline(never)]
     fn read_plan<B: Board>(&mut self, board: &mut B, offset: u16) -> Outcome {
         let mut bytes = [0; PLAN_CHUNK];
-        let length = match self.writer.newest() {
+        let newest = self.writer.newest().filter(|_| self.is_stored);
+        let length = match newest {
             Some(stored) => {
                 stored.read(board, offset, &mut bytes);
                 stored.length
@@ -109,6 +123,8 @@ impl App {
     #[inline(never)]
     fn greet<B: Board>(&mut self, board: &mut B, version: u8) -> Outcome {
         self.link.greet(&mut self.statistics);
+        // It was armed with the token of the greeting before.
+        self.abandon_arming(board, Refusal::Token);
         let token = self.new_token(board);
         self.token = (version == VERSION).then_some(token);
         self.is_used = false;
@@ -213,13 +229,6 @@ impl App {
             self.longest_law_us = 0;
         }
         Outcome::Quiet
-    }
-
-    /// A piece of the gain table, or its header, is written.
-    pub(super) fn stored<B: Board>(&mut self, board: &mut B, sequence: u8) {
-        let outcome = Ok(());
-        let report = Report::Answer(Answer { sequence, outcome });
-        self.link.send(board, &report);
     }
 
     /// The token that armed since the last greeting; none if none has, or torque went off since.

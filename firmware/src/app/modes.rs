@@ -26,7 +26,7 @@ impl App {
             .read(board, &mut self.statistics, started, meanwhile);
     }
 
-    /// Torque must stay off: says so ten times a second, for a servo may have missed it.
+    /// Torque must stay off: says so every eighth tick, for a servo may have missed it.
     pub(super) fn insist<B: Board>(&mut self, board: &mut B, started: u16) {
         if self.ticks & 7 == 0 {
             bus::torque_off(board);
@@ -37,14 +37,20 @@ impl App {
     /// Goals first, for their delay counts most; then reads and reports.
     #[inline(never)]
     pub(super) fn stream<B: Board>(&mut self, board: &mut B, started: u16) {
-        if let Some(cause) = self.must_stop() {
+        if let Some(cause) = self.must_stop(started) {
             self.soften(board, cause, State::Stream);
+            return self.watch(board, started);
+        }
+        if self.onset == Onset::Torque {
+            // Goals were sent after the last tick: long enough ago for servos to obey both.
+            self.servos.switch_on(board);
+            self.onset = Onset::Done;
             return self.watch(board, started);
         }
         match self.goal {
             Goal::Hold => {}
             Goal::Positions(goals) => self.servos.go_to(board, &goals),
-            Goal::Speeds(speeds) => self.servos.spin(board, speeds.codes()),
+            Goal::Speeds(speeds) => self.servos.spin(board, &speeds),
         }
         self.watch(board, started);
     }
@@ -52,13 +58,15 @@ impl App {
     /// Reads, then the law at once, then the report.
     #[inline(never)]
     pub(super) fn balance<B: Board>(&mut self, board: &mut B, started: u16) {
-        if let Some(cause) = self.must_stop() {
+        if let Some(cause) = self.must_stop(started) {
             self.soften(board, cause, State::Balance);
             return self.watch(board, started);
         }
         self.read(board, started);
         match self.servos.gave_up() {
-            None if self.has_attitude(board) => self.command(board),
+            None if self.has_attitude(board) && self.balance.has_gyro(self.gyro) => {
+                self.command(board);
+            }
             None => self.soften(board, Cause::AttitudeLost, State::Balance),
             // It leaves the other ones to throw the robot: not one command more.
             Some(cause) => self.soften(board, cause, State::Balance),
@@ -92,8 +100,7 @@ impl App {
         match self.onset {
             // With the first command, not before: without one the robot would fall.
             Onset::Balance => {
-                self.servos
-                    .switch_on_only(board, balancing, self.limits.torque);
+                self.servos.switch_on_only(board, balancing);
                 self.onset = Onset::Goals(0);
             }
             Onset::Goals(from) => {
@@ -104,7 +111,7 @@ impl App {
                 let next = self.servos.switch_on_half(board, from);
                 self.onset = next.map_or(Onset::Done, Onset::Others);
             }
-            Onset::Done => {}
+            Onset::Torque | Onset::Done => {}
         }
         self.balance.begin_update();
     }
@@ -125,9 +132,9 @@ impl App {
         self.link.send(board, &Report::Stream(report));
     }
 
-    /// What the tick took, and what it lost.
-    pub(super) fn account<B: Board>(&mut self, board: &mut B, started: u16) {
-        self.tick_us = since_us(board, started);
+    /// What the tick took since it was due, and what it lost.
+    pub(super) fn account<B: Board>(&mut self, board: &mut B, due: u16) {
+        self.tick_us = since_us(board, due);
         self.longest_tick_us = self.longest_tick_us.max(self.tick_us);
         self.calm = self.calm.saturating_add(1);
         if self.tick_us > TICK_US {

@@ -3,28 +3,21 @@
 use super::{App, Goal, Onset, State, Torque};
 use crate::age::Age;
 use crate::board::Board;
-use crate::bus;
-use crate::design::{ATTITUDE_US, FADE_US, LOW_ROUNDS, LOW_SUPPLY, SILENT_US, TICK_US};
-use handstand_shared::control_table::TORQUE_LIMIT;
-use handstand_shared::message::{Cause, Condition, Mode};
-use handstand_shared::packed::SERVOS;
+use crate::design::{ATTITUDE_US, FADE_US, LOW_SUPPLY, LOW_SUPPLY_US, SILENT_US, TICK_US};
+use handstand_shared::message::{Cause, Condition, Mode, Refusal};
+use handstand_shared::packed::Speeds;
+use handstand_shared::raw::TorqueLimit;
 
 impl App {
     /// Whether an armed robot must be let down.
-    pub(super) fn must_stop(&mut self) -> Option<Cause> {
-        let (low, round) = self.low;
-        if self.servos.rounds != round {
-            let is_low = self.servos.supply.is_none_or(|supply| supply < LOW_SUPPLY);
-            self.low = (
-                if is_low { low.saturating_add(1) } else { 0 },
-                self.servos.rounds,
-            );
-        }
+    pub(super) fn must_stop(&mut self, clock: u16) -> Option<Cause> {
+        let is_low = self.servos.supply.is_none_or(|supply| supply < LOW_SUPPLY);
+        self.low = is_low.then(|| self.low.unwrap_or(Age::from(clock)));
         if let Some(cause) = self.servos.gave_up() {
             Some(cause)
         } else if self.life.us() >= SILENT_US {
             Some(Cause::LinkLost)
-        } else if self.low.0 >= LOW_ROUNDS {
+        } else if self.low.is_some_and(|low| low.us() >= LOW_SUPPLY_US) {
             Some(Cause::LowSupply)
         } else {
             None
@@ -53,11 +46,10 @@ impl App {
         if self.servos.tripped.is_some() {
             self.servos.release(board);
         }
-        // A servo in wheel mode has no position to hold: it stops.
-        let balanced = matches!(self.state, State::Balance(_));
-        if balanced || matches!(self.goal, Goal::Speeds(_)) {
-            self.servos.spin(board, [0; SERVOS].into_iter());
-        } else {
+        // A servo in wheel mode has no position to hold: it stops. While balancing the others have
+        // their goals, or no torque yet.
+        self.servos.spin(board, &Speeds::default());
+        if matches!(self.state, State::Stream(_)) {
             self.servos.hold(board);
         }
         self.fading = Age::from(board.clock());
@@ -82,7 +74,7 @@ impl App {
         let left_us = FADE_US.saturating_sub(faded_us + u32::from(TICK_US));
         let sixteenths = (left_us / SIXTEENTH_US) as u16;
         let limit = self.limits.torque.0 / 16 * sixteenths;
-        bus::write_all(board, TORQUE_LIMIT, limit);
+        self.servos.lower_limit(board, TorqueLimit(limit));
         self.state = within(Torque::Fading { cause });
     }
 
@@ -99,6 +91,7 @@ impl App {
     /// Torque off, and nothing that was said before arms again.
     pub(super) fn disarm<B: Board>(&mut self, board: &mut B) {
         self.servos.disarm(board);
+        self.abandon_arming(board, Refusal::State);
         self.off = Age::from(board.clock());
         self.onset = Onset::Done;
         self.token = None;
@@ -111,6 +104,7 @@ impl App {
         self.disarm(board);
         // An adapter's user may have changed them.
         self.servos.ask_again();
+        self.balance.forget_rest();
         if self.state == State::Bridge {
             self.servos.forget_supply();
         }

@@ -1,4 +1,5 @@
-//! The CM-5's ATmega128: the only unsafe code of the project, and every register it writes.
+//! The CM-5's ATmega128: every register it writes. Unsafe code is here, in the law's assembly
+//! (`shared/src/law/avr.rs`) and in the program that tests it, and nowhere else.
 //!
 //! A module per peripheral. Pins are embedded-hal's and the PC line is embedded-io's; for ADC,
 //! EEPROM and watchdog embedded-hal 1.0 has no traits, and nothing here waits for a time, so there
@@ -96,6 +97,12 @@ impl Board for Cm5 {
         let counts = |us: u16| us.saturating_mul(CLOCK_PER_US);
         let [first, between, all] = [first_us, between_us, all_us].map(counts);
         usart::bus::hear(&self.registers, out, first, between, all)
+    }
+
+    fn wait(&mut self, us: u16) {
+        usart::bus::finish(&self.registers);
+        let began = self.clock();
+        while crate::board::since_us(self, began) < us {}
     }
 
     #[inline(always)]

@@ -3,7 +3,8 @@
 use core::cell::UnsafeCell;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// A byte that an interrupt and the program share, and only one of them changes. The AVR reads and
+/// A byte that an interrupt and the program share; where both change it, never at the same time.
+/// The AVR reads and
 /// writes a byte in one instruction; `AtomicU8` would switch interrupts off and on around it, which
 /// costs more than the access.
 pub struct SharedByte(UnsafeCell<u8>);

@@ -1,8 +1,12 @@
 //! The first link's attitude: the host's, or the gyro's rate and its sum.
 
 use super::Balance;
+use crate::design::{GYRO_RAIL_CODES, GYRO_ZERO_CODES, REST_RATE, REST_TICKS};
 use handstand_shared::message::Attitude;
 use handstand_shared::plan::{Gyro, Plan};
+
+/// The ADC's largest code.
+const ADC_MAX: u16 = 1023;
 
 /// Binary places of the gyro's mean code.
 pub(super) const ZERO_PLACES: u8 = 16;
@@ -20,6 +24,22 @@ impl Balance {
         // Both below 2^26.
         let off = (i32::from(gyro as i16) << ZERO_PLACES).wrapping_sub(self.zero);
         self.zero = self.zero.wrapping_add(off >> REST_SHIFT);
+        self.rest.add(gyro, self.plan.gyro.scale);
+    }
+
+    /// What was at rest may have been moved since.
+    pub fn forget_rest(&mut self) {
+        self.rest = Rest::NONE;
+    }
+
+    /// Whether the gyro, if it is what the plan balances with, was heard at rest near its zero.
+    pub fn is_at_rest(&self) -> bool {
+        self.plan.gyro.from_host || self.rest.is_near(self.plan.gyro.zero)
+    }
+
+    /// Whether this code is a rate of a gyro that is there, if the plan balances with one.
+    pub fn has_gyro(&self, code: u16) -> bool {
+        self.plan.gyro.from_host || is_off_rails(code)
     }
 
     /// Takes the first link's attitude: the host's, if the plan wants it, or the gyro's rate and
@@ -57,6 +77,46 @@ impl Balance {
             },
             None => Plan::ZERO.gyro,
         }
+    }
+}
+
+/// Whether a code is one of a gyro that is connected and within what it measures.
+fn is_off_rails(code: u16) -> bool {
+    (GYRO_RAIL_CODES..=ADC_MAX - GYRO_RAIL_CODES).contains(&code)
+}
+
+/// The gyro's codes since it came to rest. All zeros if there were none, as all of
+/// [`Balance::NONE`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Rest {
+    lowest: u16,
+    highest: u16,
+    ticks: u8,
+}
+
+impl Rest {
+    pub(super) const NONE: Rest = Rest {
+        lowest: 0,
+        highest: 0,
+        ticks: 0,
+    };
+
+    /// Another tick's code of a gyro with this scale, rate steps per code times 16.
+    fn add(&mut self, code: u16, scale: i16) {
+        let (lowest, highest) = (self.lowest.min(code), self.highest.max(code));
+        let spread = u32::from(highest - lowest);
+        let rate = spread * u32::from(scale.unsigned_abs()) / 16;
+        if self.ticks == 0 || (spread > 1 && rate > u32::from(REST_RATE)) {
+            (self.lowest, self.highest, self.ticks) = (code, code, 1);
+        } else {
+            (self.lowest, self.highest) = (lowest, highest);
+            self.ticks = self.ticks.saturating_add(1);
+        }
+    }
+
+    fn is_near(&self, zero: u16) -> bool {
+        let is_sound = |code: u16| is_off_rails(code) && code.abs_diff(zero) <= GYRO_ZERO_CODES;
+        self.ticks >= REST_TICKS && is_sound(self.lowest) && is_sound(self.highest)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Commanding: torque, goals and speeds, one packet for all.
 
+use super::mode::ServoMode;
+use super::registers::Registers;
 use super::{Servo, Servos};
 use crate::board::Board;
 use crate::bus;
@@ -9,13 +11,9 @@ use handstand_shared::control_table::{
 };
 use handstand_shared::dynamixel::BROADCAST;
 use handstand_shared::message::ArmLimits;
-use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::packed::{Positions, SERVOS, Speeds};
 use handstand_shared::raw::{Position, Signed, TorqueLimit};
 use heapless::Vec;
-
-/// Requests in a row that a servo may leave unanswered and is commanded all the same: an answer
-/// that is lost as torque comes on would leave a joint to one of its two servos. Three ticks.
-const MOST_UNANSWERED: u8 = 4;
 
 /// Ids that no servo has.
 const NO_SERVO: [u8; 4] = [BROADCAST; 4];
@@ -41,35 +39,65 @@ enum Sent {
 }
 
 impl Servos {
-    /// Those that answered lately are commanded from now on, within these limits, and their goal is
-    /// where they stand. What limits the speed of a servo with a goal is the speed of one that
-    /// turns without end: that gets 0, and so does one whose mode is not known. Torque stays as it
-    /// is.
-    pub fn choose<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
+    /// Those that answered lately are commanded from now on, within these limits, which
+    /// [`Servos::write_limits`] writes, and their goal is where they stand. Torque stays as it is.
+    pub fn choose(&mut self, limits: ArmLimits) {
         self.tripped = None;
         self.has_torque = false;
+        self.limits = limits;
         for servo in self.all_mut() {
-            servo.armed = servo.unanswered <= MOST_UNANSWERED;
-            servo.goal = servo.position;
+            servo.armed = servo.was_heard_lately() && servo.mode != ServoMode::Unknown;
+            servo.registers = Registers::Unread;
         }
-        bus::write_all(board, TORQUE_LIMIT, limits.torque.0);
-        self.write_each(board, MOVING_SPEED, |servo| match servo.is_wheel {
-            Some(false) => limits.speed.0,
-            Some(true) | None => 0,
-        });
     }
 
-    /// Torque on where a servo answered lately, within these limits, and the goal where it stood.
-    pub fn arm<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
-        self.choose(board, limits);
-        self.hold(board);
-        self.switch_on(board);
+    /// Writes the torque limit, or the moving speeds: one of them a tick, for servos ignore a write
+    /// that comes right behind another.
+    pub fn write_limits<B: Board>(&self, board: &mut B, is_speed: bool) {
+        if is_speed {
+            let limits = self.limits;
+            let is_meant = |servo: &Servo| servo.armed;
+            self.write_each(board, MOVING_SPEED, is_meant, |servo| {
+                // None has an unknown mode: it would not be armed.
+                servo.mode.moving_speed(limits).unwrap_or(limits.speed.0)
+            });
+        } else {
+            bus::write_all(board, TORQUE_LIMIT, self.limits.torque.0);
+        }
+    }
+
+    /// Whether all that are commanded have said that their limits are those they were written.
+    pub fn have_limits(&self) -> bool {
+        let mut armed = self.all().iter().filter(|servo| servo.armed);
+        armed.all(|servo| servo.registers == Registers::AsWritten)
+    }
+
+    /// Those whose registers could not be read are not commanded, as those that do not answer.
+    pub fn leave_out_unread(&mut self) {
+        for servo in self.all_mut() {
+            servo.armed &= [Registers::AsWritten, Registers::Differ].contains(&servo.registers);
+        }
+    }
+
+    /// Lowers the torque limit of those that are commanded; one that gave up would be woken by it.
+    pub fn lower_limit<B: Board>(&mut self, board: &mut B, limit: TorqueLimit) {
+        self.limits.torque = limit;
+        if self.tripped.is_some() {
+            self.release(board);
+            let is_meant = |servo: &Servo| servo.armed;
+            self.write_each(board, TORQUE_LIMIT, is_meant, |_| limit.0);
+        } else {
+            bus::write_all(board, TORQUE_LIMIT, limit.0);
+        }
     }
 
     /// Torque on in all that are commanded.
     pub fn switch_on<B: Board>(&mut self, board: &mut B) {
         self.write_to(board, Sent::TorqueOn, ALL, false, NO_SERVO);
         self.has_torque = true;
+        for servo in self.all_mut() {
+            servo.registers = Registers::Unread;
+        }
     }
 
     /// Torque on in those that are commanded of half of the servo list, from this place on. The
@@ -81,10 +109,9 @@ impl Servos {
         next
     }
 
-    /// Torque on in those of these servos that are commanded; within this limit, which a servo that
-    /// missed it before has now.
-    pub fn switch_on_only<B: Board>(&self, board: &mut B, ids: [u8; 4], limit: TorqueLimit) {
-        bus::write_all(board, TORQUE_LIMIT, limit.0);
+    /// Torque on in those of these servos that are commanded, right behind their first command.
+    pub fn switch_on_only<B: Board>(&self, board: &mut B, ids: [u8; 4]) {
+        bus::pause(board);
         self.write_to(board, Sent::TorqueOn, ALL, true, ids);
     }
 
@@ -131,7 +158,7 @@ impl Servos {
         let is_goal = sent == Sent::Goal;
         let all = self.all().iter().skip(part.from.into());
         let all = all.take(part.places.into());
-        let is_meant = |servo: &&Servo| servo.armed && ids.contains(&servo.id) == is_one;
+        let is_meant = |servo: &&Servo| servo.takes_goals() && ids.contains(&servo.id) == is_one;
         let value = |servo: &Servo| if is_goal { servo.goal.0 } else { 1 };
         let count = all.clone().filter(is_meant).count() as u8;
         let values = all.filter(is_meant).map(|servo| (servo.id, value(servo)));
@@ -166,28 +193,32 @@ impl Servos {
 
     /// Sends goals, each at most [`GOAL_SLEW`] from the last.
     pub fn go_to<B: Board>(&mut self, board: &mut B, goals: &Positions) {
-        let armed = self.armed();
-        let moved = self
-            .all_mut()
-            .iter_mut()
-            .enumerate()
-            .filter_map(|(place, servo)| {
-                let from = servo.goal.0;
-                let nearest = from.saturating_sub(GOAL_SLEW);
-                let farthest = from.saturating_add(GOAL_SLEW).min(Position::MAX.0);
-                let goal = goals.get(place).max(nearest).min(farthest);
-                servo.goal = Position(goal);
-                servo.armed.then_some((servo.id, goal))
-            });
-        bus::write_each(board, GOAL_POSITION, armed, moved);
+        let all = self.all().iter();
+        let count = all.filter(|servo| servo.takes_goals()).count() as u8;
+        let all = self.all_mut().iter_mut().enumerate();
+        let commanded = all.filter(|(_, servo)| servo.takes_goals());
+        let moved = commanded.map(|(place, servo)| {
+            let from = servo.goal.0;
+            let nearest = from.saturating_sub(GOAL_SLEW);
+            let farthest = from.saturating_add(GOAL_SLEW).min(Position::MAX.0);
+            let goal = goals.get(place).max(nearest).min(farthest);
+            servo.goal = Position(goal);
+            (servo.id, goal)
+        });
+        bus::write_each(board, GOAL_POSITION, count, moved);
     }
 
-    /// Sends commands to servos in wheel mode, in the servo list's order.
-    pub fn spin<B: Board>(&self, board: &mut B, speeds: impl Iterator<Item = u16>) {
-        let all = self.all().iter().zip(speeds);
-        let commanded = all.filter(|(servo, _)| servo.armed);
-        let commands = commanded.map(|(servo, code)| (servo.id, code));
-        bus::write_each(board, MOVING_SPEED, self.armed(), commands);
+    /// Sends commands to the servos in wheel mode, in the servo list's order: to others they would
+    /// be speed limits, or none.
+    pub fn spin<B: Board>(&self, board: &mut B, speeds: &Speeds) {
+        let is_meant = |servo: &Servo| servo.armed && servo.mode == ServoMode::Wheel;
+        let all = self.all().iter();
+        let count = all.clone().filter(|servo| is_meant(servo)).count() as u8;
+        let commanded = all
+            .zip(speeds.codes())
+            .filter(|(servo, _)| is_meant(servo))
+            .map(|(servo, code)| (servo.id, code));
+        bus::write_each(board, MOVING_SPEED, count, commanded);
     }
 
     /// Sends commands to servos in wheel mode, each given with its id.
@@ -215,10 +246,16 @@ impl Servos {
         &self,
         board: &mut B,
         register: Register,
+        is_meant: impl Fn(&Servo) -> bool,
         value: impl Fn(&Servo) -> u16,
     ) {
-        let armed = self.all().iter().filter(|servo| servo.armed);
-        let values = armed.map(|servo| (servo.id, value(servo)));
-        bus::write_each(board, register, self.armed(), values);
+        let meant = self.all().iter().filter(|servo| is_meant(servo));
+        let count = meant.clone().count() as u8;
+        bus::write_each(
+            board,
+            register,
+            count,
+            meant.map(|servo| (servo.id, value(servo))),
+        );
     }
 }

@@ -107,6 +107,7 @@ impl Bus {
     /// Receive a byte from the controller, whose stop bit ended at `now_ns`.
     pub fn receive(&mut self, now_ns: u64, byte: u8) {
         self.advance(now_ns);
+        let byte = self.collided(now_ns, byte);
         let mut faults = (self.servos.iter().map(|servo| &servo.faults))
             .chain(self.x.servos.iter().map(|servo| &servo.faults));
         if faults.any(|faults| faults.echo) {
@@ -123,6 +124,7 @@ impl Bus {
             return;
         };
         let id = packet.id();
+        let began_ns = now_ns.saturating_sub(packet.bytes().len() as u64 * BYTE_NS);
         if is_torque_off(id, request) {
             self.torque_offs.push(now_ns);
         }
@@ -132,9 +134,21 @@ impl Bus {
         };
         // The request borrows the parser, so the line is filled from the other fields.
         let replies = replies(&mut self.servos, self.line_baud, |servo| {
-            servo.execute(now_ns, id, request)
+            servo.execute((began_ns, now_ns), id, request)
         });
         put(&mut self.line, now_ns + wait_ns, &replies);
+    }
+
+    /// What the servos hear of a byte of the controller's while one of them still answers: the line
+    /// is low while either pulls it low. Bits are not shifted against each other.
+    fn collided(&self, now_ns: u64, byte: u8) -> u8 {
+        let meets = |end_ns: u64| end_ns + BYTE_NS > now_ns && end_ns < now_ns + BYTE_NS;
+        let line = self
+            .line
+            .iter()
+            .take_while(|(end_ns, _)| *end_ns < now_ns + BYTE_NS);
+        let met = line.filter(|(end_ns, _)| meets(*end_ns) && *end_ns != now_ns);
+        met.fold(byte, |byte, (_, other)| byte & other)
     }
 
     fn reply(&mut self, from_ns: u64, of: impl FnMut(&mut Servo) -> Option<(Vec<u8>, u64)>) {

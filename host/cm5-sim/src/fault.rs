@@ -21,6 +21,12 @@ pub struct Faults {
     pub wrong_id: f64,
     /// A request reaches it corrupted: it does nothing and reports a checksum error.
     pub corrupt_request: f64,
+    /// It answers and obeys no write.
+    pub ignore_writes: bool,
+    /// Time it needs for a write, ns: one that begins before is ignored.
+    pub write_ns: u64,
+    /// A byte that no servo sent comes before a reply, as from a line that turns round.
+    pub stray: f64,
     /// The wiring sends the controller's own bytes back.
     pub echo: bool,
     rng: ChaCha8Rng,
@@ -37,6 +43,9 @@ impl Faults {
             late_ns: 1_000_000,
             wrong_id: 0.0,
             corrupt_request: 0.0,
+            ignore_writes: false,
+            write_ns: 0,
+            stray: 0.0,
             echo: false,
             rng: ChaCha8Rng::seed_from_u64(seed),
         }
@@ -70,6 +79,9 @@ impl Faults {
         if self.happens(self.flip) {
             let bit = self.rng.random_range(0..answer.len() * 8);
             answer[bit / 8] ^= 1 << (bit % 8);
+        }
+        if self.happens(self.stray) {
+            answer.insert(0, self.rng.random());
         }
         let late_ns = if self.happens(self.late) {
             self.late_ns

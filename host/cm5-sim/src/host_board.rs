@@ -36,6 +36,8 @@ pub struct HostBoard {
     pub buttons: u8,
     /// LEDs lit, see [`handstand_firmware::panel::led`].
     pub leds: u8,
+    /// Time that the program takes for a byte from the PC, ns: none, unless a test is about it.
+    pub byte_ns: u64,
     /// ADC code of the gyro, 0..=1023, used where no robot is attached.
     pub gyro: u16,
     /// The plan compiled into the program.
@@ -73,6 +75,7 @@ impl HostBoard {
             free_ns: 0,
             buttons: 0,
             leds: 0,
+            byte_ns: 0,
             gyro: GYRO_AT_REST,
             compiled: Vec::new(),
             eeprom: vec![0xff; EEPROM_SIZE],
@@ -179,6 +182,11 @@ impl Board for HostBoard {
         }
     }
 
+    fn wait(&mut self, us: u16) {
+        self.now_ns += u64::from(us) * 1000;
+        self.bus.miss(self.now_ns);
+    }
+
     fn bus_flush(&mut self) {
         self.bus.miss(self.now_ns);
     }
@@ -186,6 +194,7 @@ impl Board for HostBoard {
     fn link_receive(&mut self) -> Option<u8> {
         let (ends, byte) = self.from_pc.front().copied()?;
         (ends <= self.now_ns).then(|| self.from_pc.pop_front())?;
+        self.now_ns += self.byte_ns;
         Some(byte)
     }
 

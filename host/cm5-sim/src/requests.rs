@@ -6,10 +6,10 @@ use handstand_shared::dynamixel::timing::EEPROM_NS;
 use handstand_shared::dynamixel::{BROADCAST, ErrorBits, Request, Status};
 
 impl Servo {
-    /// Execute a request received at `now_ns`; returns the reply's bytes and its delay, ns.
+    /// Execute a request received from `began_ns` to `now_ns`; returns the reply's bytes and its delay, ns.
     pub(super) fn execute(
         &mut self,
-        now_ns: u64,
+        (began_ns, now_ns): (u64, u64),
         id: u8,
         request: Request,
     ) -> Option<(Vec<u8>, u64)> {
@@ -22,6 +22,11 @@ impl Servo {
         }
         if self.faults.corrupts_request() {
             return self.reject_checksum(id);
+        }
+        let is_read = matches!(request, Request::Ping | Request::Read { .. });
+        if !is_read && began_ns < self.busy_until_ns {
+            self.ignored += 1;
+            return None;
         }
         self.measure();
         let (me, delay_ns) = (self.id(), self.delay_ns());
@@ -113,6 +118,13 @@ impl Servo {
 
     /// All or nothing, as the servo does it: a value out of range changes no register.
     fn write(&mut self, now_ns: u64, address: u8, data: &[u8]) -> ErrorBits {
+        if self.faults.ignore_writes {
+            self.ignored += 1;
+            return ErrorBits(0);
+        }
+        if self.faults.write_ns > 0 {
+            self.busy_until_ns = now_ns + self.faults.write_ns;
+        }
         let from = usize::from(address);
         let mut changed = self.table;
         let Some(slots) = changed.get_mut(from..from + data.len()) else {
@@ -140,12 +152,13 @@ impl Servo {
         if REGISTERS.iter().filter(touched).any(|r| *r == TORQUE_LIMIT) {
             self.recover();
         }
-        // A goal switches torque on, as the servo's own firmware does.
+        // A goal switches torque on, as the servo's own firmware is said to.
         if REGISTERS
             .iter()
             .filter(touched)
             .any(|r| *r == GOAL_POSITION)
             && self.get(TORQUE_LIMIT) > 0
+            && self.goal_switches_on
         {
             self.set(TORQUE_ENABLE, 1);
         }

@@ -15,6 +15,10 @@ pub struct Servo {
     pub(super) table: [u8; TABLE],
     pub(super) registered: Option<(u8, Vec<u8>)>,
     pub(super) silent_until_ns: u64,
+    /// It ignores writes before.
+    pub(super) busy_until_ns: u64,
+    /// Whether a goal switches torque on. Both are said of real servos.
+    pub goal_switches_on: bool,
     /// Overload protection.
     pub protection: Protection,
     /// Distinguishes servos with the same id: the first one has the id itself.
@@ -46,6 +50,8 @@ impl Servo {
             table: [0; TABLE],
             registered: None,
             silent_until_ns: 0,
+            busy_until_ns: 0,
+            goal_switches_on: true,
             protection: Protection::default(),
             serial: u64::from(id),
             faults: Faults::none(u64::from(id)),
@@ -72,6 +78,19 @@ impl Servo {
             self.set(*register, register.default);
         }
         self.set(GOAL_POSITION, Position::CENTRE.0);
+    }
+
+    /// Loses its RAM, as it does when its supply dips or its plug moves: torque off, the torque
+    /// limit as EEPROM has it, no speed limit, the goal where it stands.
+    pub fn restart(&mut self) {
+        for register in REGISTERS.iter().filter(|r| r.address >= Register::RAM) {
+            self.set(*register, register.default);
+        }
+        self.set(TORQUE_LIMIT, self.get(MAX_TORQUE));
+        self.registered = None;
+        self.protection = Protection::default();
+        self.measure();
+        self.set(GOAL_POSITION, self.get(PRESENT_POSITION));
     }
 
     /// Its id.

@@ -120,6 +120,22 @@ pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
             "a servo that the plan drives is not in wheel mode",
             "write 0 to both its angle limits: `handstand bus write`",
         ),
+        Refusal::ServoMode => (
+            "a servo has not said whether it is in wheel mode",
+            "try again; if it stays so, its answers are disturbed: `handstand bus monitor` counts them",
+        ),
+        Refusal::ServoError => (
+            "a servo reports overload or overheating",
+            "let it cool: `handstand bus monitor` shows which",
+        ),
+        Refusal::Registers => (
+            "a servo does not hold the torque and speed limits it was written",
+            "try again; if it stays so, requests to it are disturbed: look at its cable and plug",
+        ),
+        Refusal::Gyro => (
+            "the gyro is not connected, far from the plan's zero, or not at rest",
+            "hold the robot still for 0.1 s; `handstand bus monitor` shows the code, `gains deploy` sets the zero",
+        ),
         Refusal::Pose => (
             "the robot is too far from the pose its gains are for",
             "bring it there by hand, then arm",

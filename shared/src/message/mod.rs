@@ -23,7 +23,7 @@ use crate::frame::{self, MAX_BODY, MAX_FRAME};
 use serde::{Deserialize, Serialize};
 
 /// Version of the messages; host and firmware must have the same.
-pub const VERSION: u8 = 5;
+pub const VERSION: u8 = 6;
 
 /// Period of the ticks that the firmware reports, us: 100 Hz, as the paper samples.
 pub const TICK_US: u16 = 10_000;

@@ -138,8 +138,16 @@ pub enum Refusal {
     Attitude,
     /// A torque or speed limit that no servo knows.
     Limits,
-    /// A servo that the plan drives is not in wheel mode, or has not said so.
+    /// A servo that the plan drives is not in wheel mode.
     Wheel,
+    /// A servo has not yet said whether it is in wheel mode.
+    ServoMode,
+    /// A servo reports overload or overheating.
+    ServoError,
+    /// A servo was read, and its torque or speed limit is not the one it was written.
+    Registers,
+    /// The gyro is at a rail, far from the plan's zero, or was not at rest for 100 ms.
+    Gyro,
 }
 
 /// The controller's own state.

@@ -34,6 +34,12 @@ pub struct Joint {
     pub fastest: u16,
 }
 
+/// Ids from here on are no servo's.
+const NO_SERVO: u8 = 254;
+
+/// Largest dead zone that leaves room for commands: half of the largest command.
+const MOST_DEAD: u16 = 511;
+
 /// What was applied last, and what is still owed, in steps of the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AppliedInput {
@@ -153,10 +159,21 @@ impl Joint {
         (1..=1022).contains(&(i32::from(self.centre) + angle))
     }
 
+    /// Whether no servo drives both joints: it would be given two commands.
+    pub(super) fn is_apart_from(&self, other: &Joint) -> bool {
+        let own = [self.id, self.mirror];
+        let shared = own.into_iter().filter(|id| *id < NO_SERVO);
+        shared
+            .into_iter()
+            .all(|id| id != other.id && id != other.mirror)
+    }
+
     pub(super) fn is_sound(&self) -> bool {
         self.id < 254
             && self.centre <= 1023
-            && self.dead <= 1023
+            && self.mirror != self.id
+            // Else every command would be the largest.
+            && self.dead <= MOST_DEAD
             && (0..=self.most).contains(&self.least)
             // Else it could never leave nothing.
             && self.slew >= self.least.max(1)

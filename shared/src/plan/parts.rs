@@ -19,6 +19,11 @@ impl Gyro {
         scale: 0,
     };
 
+    /// Whether the zero is an ADC code, and a gyro that is balanced with has a scale.
+    pub(super) fn is_sound(&self) -> bool {
+        self.zero <= 1023 && (self.from_host || self.scale != 0)
+    }
+
     pub(super) fn bytes(&self, sink: &mut impl FnMut(u8)) {
         sink(u8::from(self.from_host));
         let words = [self.zero.to_le_bytes(), self.scale.to_le_bytes()];

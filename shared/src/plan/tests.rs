@@ -116,6 +116,48 @@ fn a_plan_survives_its_bytes_and_others_are_refused() {
             }
         }
     }
+    type Spoil = fn(&mut Plan);
+    let spoilt: [(&str, Spoil); 9] = [
+        ("own mirror", |plan| {
+            plan.joints[0].mirror = plan.joints[0].id
+        }),
+        ("one servo of both", |plan| {
+            plan.joints[1].id = plan.joints[0].id
+        }),
+        ("one mirror of both", |plan| {
+            plan.joints[1].mirror = plan.joints[0].mirror
+        }),
+        ("mirror of the other", |plan| {
+            plan.joints[1].id = plan.joints[0].mirror
+        }),
+        ("driven and mirror", |plan| {
+            plan.joints[1].mirror = plan.joints[0].id
+        }),
+        ("a dead zone of half", |plan| plan.joints[1].dead = 512),
+        ("a zero beyond the ADC", |plan| plan.gyro.zero = 1024),
+        ("a gyro of no scale", |plan| {
+            (plan.gyro.from_host, plan.gyro.scale) = (false, 0)
+        }),
+        ("a range of more than a right angle", |plan| {
+            plan.range = 15_709
+        }),
+    ];
+    for (what, spoil) in spoilt {
+        let mut unsound = plan(laws()[0]);
+        unsound.joints[0].mirror = 2;
+        (unsound.joints[1].id, unsound.joints[1].mirror) = (11, 12);
+        assert!(Plan::from_bytes(&bytes_of(&unsound)).is_some());
+        spoil(&mut unsound);
+        assert_eq!(Plan::from_bytes(&bytes_of(&unsound)), None, "{what}");
+    }
+    // Without mirrors there is none to share.
+    let mut alone = plan(laws()[0]);
+    (
+        alone.joints[0].mirror,
+        alone.joints[1].mirror,
+        alone.joints[1].id,
+    ) = (255, 255, 11);
+    assert!(Plan::from_bytes(&bytes_of(&alone)).is_some());
     assert_eq!(bytes_of(&plan(laws()[1])).len(), Plan::MOST);
     assert_eq!(Plan::from_bytes(&bytes_of(&Plan::ZERO)), None);
 }

@@ -48,6 +48,7 @@ fn show(args: &Args, toolchain: &str, built: &Built, image: &Image) {
     let Image {
         flash,
         ram,
+        stack,
         forbidden,
     } = image;
     if args.json {
@@ -56,6 +57,7 @@ fn show(args: &Args, toolchain: &str, built: &Built, image: &Image) {
             json!({
                 "toolchain": toolchain, "elf": built.elf, "hex": built.hex, "bin": built.bin,
                 "flash_bytes": flash, "flash_limit_bytes": FLASH_LIMIT, "ram_bytes": ram, "ram_size_bytes": RAM_SIZE,
+                "stack_bytes": stack,
                 "forbidden_symbols": forbidden,
             })
         );
@@ -71,7 +73,10 @@ fn show(args: &Args, toolchain: &str, built: &Built, image: &Image) {
         share(*ram, RAM_SIZE),
         RAM_SIZE - ram
     );
-    println!("Stack  how deep it gets is measured by `cargo xtask bench-firmware`");
+    println!(
+        "Stack  {stack:6} bytes at most; with static data {:.1} % of RAM",
+        share(ram + stack, RAM_SIZE)
+    );
     println!("ELF    {}", built.elf.display());
     println!("HEX    {}", built.hex.display());
     println!("BIN    {}", built.bin.display());
@@ -98,5 +103,9 @@ fn is_fit(image: &Image) -> bool {
     if image.flash >= FLASH_LIMIT {
         eprintln!("Not fit to be flashed: it would overwrite the boot loader");
     }
-    image.forbidden.is_empty() && image.flash < FLASH_LIMIT
+    let has_room = (image.ram + image.stack) * 10 <= RAM_SIZE * 8;
+    if !has_room {
+        eprintln!("Not fit to be flashed: static data and stack take more than 80 % of RAM");
+    }
+    image.forbidden.is_empty() && image.flash < FLASH_LIMIT && has_room
 }

@@ -57,14 +57,25 @@ pub fn put(r: &Peripherals, mut bytes: &[u8]) {
         finish(r);
         STATE.set(OPEN);
         bus_transmits();
-        transmit(r, *first);
+        begin(r, *first);
         bytes = rest;
     }
     bytes.iter().for_each(|byte| OUT.push(*byte));
     wake(r);
 }
 
-/// Gives the transmitter a byte, for which it has room.
+/// Gives the idle transmitter a packet's first byte. What it sent before is cleared first: three
+/// interrupts after the write would last longer than the byte, and its own end would be lost.
+#[inline(always)]
+fn begin(r: &Peripherals, byte: u8) {
+    // SAFETY: plain bits.
+    unsafe {
+        r.USART0.ucsr0a().write(|w| w.bits(DOUBLE_SPEED | SENT));
+        r.USART0.udr0().write(|w| w.bits(byte));
+    }
+}
+
+/// Gives the transmitter a byte, for which it has room, while interrupts are off.
 #[inline(always)]
 fn transmit(r: &Peripherals, byte: u8) {
     // SAFETY: plain bits.
@@ -91,7 +102,7 @@ fn is_sending() -> bool {
 /// Waits until the last stop bit is out. A USART that is not done after twice the longest time is
 /// broken, and given up.
 #[inline(always)]
-fn finish(r: &Peripherals) {
+pub fn finish(r: &Peripherals) {
     let start = clock(r);
     while is_sending() {
         if clock(r).wrapping_sub(start) >= LONGEST_US * CLOCK_PER_US {

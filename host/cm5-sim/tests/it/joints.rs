@@ -109,9 +109,11 @@ fn a_servo_that_loses_its_torque_is_noticed() {
         cm5.bus().servo(id).unwrap().set(TORQUE_ENABLE, 0);
         // Each servo says so every 180 ms.
         say(&mut cm5, &say_it, 200);
-        assert_eq!(cm5.app.condition(), Condition::Soft, "servo {id}");
+        let fault = Condition::Fault(Cause::TorqueLost);
+        let condition = cm5.app.condition();
+        assert!([Condition::Soft, fault].contains(&condition), "servo {id}");
         say(&mut cm5, &say_it, 200);
-        assert_eq!(cm5.app.condition(), Condition::Fault(Cause::TorqueLost));
+        assert_eq!(cm5.app.condition(), fault);
         assert!(!cm5.bus().any_torque());
         let tripped = telemetry(&mut cm5).tripped;
         assert_eq!(tripped, Some(TrippedServo { id, error: 0 }));

@@ -234,8 +234,15 @@ fn compare(cm5: &mut VirtualCm5, plan: &Plan, random: &mut ChaCha8Rng) -> usize 
     to_phase(cm5);
     cm5.send(&Command::Attitude(attitude));
     cm5.send(&arm_with(token));
-    // It arrives while a tick is under way, and is obeyed after it.
-    cm5.run_ms(10.0);
+    // It arrives while a tick is under way, and is obeyed after it; torque comes on when the servos
+    // have said their limits.
+    for _ in 0..30 {
+        cm5.run_ms(10.0);
+        if cm5.app.is_armed() {
+            break;
+        }
+        cm5.send(&Command::Attitude(attitude));
+    }
     assert_eq!(cm5.app.condition(), Condition::BalanceArmed, "{plan:?}");
     let mut none = 0;
     let mut heard = [angles[1], angles[2]];

@@ -219,3 +219,37 @@ fn the_plan_that_counts_is_told() {
     assert_eq!(cm5.app.plan_fingerprint(), Some(fingerprint));
     assert_eq!(greet(&mut cm5).plan, fingerprint);
 }
+
+/// As after an update of the firmware: the plan in EEPROM is of an older version.
+#[test]
+fn the_plan_that_is_read_is_the_one_whose_fingerprint_is_said() {
+    let compiled = bytes(&plan());
+    let mut cm5 = VirtualCm5::with_plan(compiled.clone(), vec![0xff; 4096], ResetCause(1));
+    cm5.run_ms(250.0);
+    cm5.send_bytes(&[0]);
+    greet(&mut cm5);
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    let mut old = [0; PLAN_CHUNK];
+    old[0] = 3;
+    let (length, check) = (PLAN_CHUNK as u16, handstand_shared::crc::crc32(&old));
+    let (offset, bytes) = (0, old);
+    let written = ask(&mut cm5, &Command::PlanChunk { offset, bytes });
+    assert_eq!(written, Some(Ok(())));
+    let stored = ask(&mut cm5, &Command::PlanStore { length, check });
+    assert_eq!(stored, Some(Ok(())));
+    cm5.run_ms(100.0);
+    assert_eq!(greet(&mut cm5).plan, plan().fingerprint());
+    cm5.clear();
+    cm5.send(&Command::PlanRead { offset: 0 });
+    cm5.run_ms(60.0);
+    let read = cm5
+        .reports()
+        .into_iter()
+        .find_map(|(_, report)| match report {
+            Report::PlanChunk { length, bytes, .. } => Some((length, bytes)),
+            _ => None,
+        });
+    let (length, bytes) = read.expect("a piece");
+    assert_eq!(usize::from(length), compiled.len());
+    assert_eq!(bytes[..], compiled[..PLAN_CHUNK]);
+}

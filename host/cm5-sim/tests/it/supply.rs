@@ -72,13 +72,39 @@ fn an_adapter_forgets_the_supply() {
         }
         let outcome = ask(&mut cm5, &arm_with(token));
         ask(&mut cm5, &Command::Disarm);
+        cm5.run_ms(20.0);
         greet(&mut cm5);
         assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
         cm5.run_ms(400.0);
         outcome
     };
     arm_after(Mode::Stream);
-    assert_eq!(arm_after(Mode::Balance), Some(Ok(())));
+    // The supply is known; modes are asked anew.
+    let known = Some(Err(Refusal::ServoMode));
+    assert_eq!(arm_after(Mode::Balance), known);
     assert_eq!(arm_after(Mode::Bridge), Some(Err(Refusal::Supply)));
-    assert_eq!(arm_after(Mode::Stream), Some(Ok(())));
+    assert_eq!(arm_after(Mode::Stream), known);
+}
+
+/// Whatever the servo list's length, and with it that of a round.
+#[test]
+fn a_dip_of_a_tenth_of_a_second_stops_no_robot_of_one_servo() {
+    for (dip_ms, stops) in [(100, false), (190, false), (260, true)] {
+        let mut cm5 = VirtualCm5::new();
+        greet(&mut cm5);
+        let list = ServoList {
+            count: 1,
+            ..ServoList::default()
+        };
+        ask(&mut cm5, &Command::Mode(Mode::Stream));
+        assert_eq!(ask(&mut cm5, &Command::ServoList(list)), Some(Ok(())));
+        arm(&mut cm5);
+        let set = |cm5: &mut VirtualCm5, volts| cm5.bus().servo(1).unwrap().supply_v = volts;
+        set(&mut cm5, 8.0);
+        say(&mut cm5, &Command::KeepAlive, dip_ms);
+        set(&mut cm5, 9.6);
+        say(&mut cm5, &Command::KeepAlive, 50);
+        let is_soft = cm5.app.condition() == Condition::Soft;
+        assert_eq!(is_soft, stops, "{dip_ms} ms: {:?}", cm5.app.condition());
+    }
 }

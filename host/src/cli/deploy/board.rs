@@ -94,7 +94,7 @@ impl BoardArgs {
         let lag_s = Some(self.servo_lag).filter(|lag_s| *lag_s != 0.0);
         Ok(ToldDrives {
             full_nm: within("--full-torque", self.full_torque, 1e-3, 1e3)?,
-            dead_zone: within("--dead-zone", self.dead_zone, 0.0, 0.999)?,
+            dead_zone: within("--dead-zone", self.dead_zone, 0.0, 0.499)?,
             delay_s: within("--drive-delay", self.drive_delay, 0.0, 0.5)?,
             lag_s: within("--servo-lag", lag_s, 2e-3, 0.2)?.unwrap_or(0.0),
             supply_v: within("--supply", self.supply, 1.0, 100.0)?,
@@ -132,6 +132,13 @@ impl BoardArgs {
 
     fn gyro(&self) -> Result<Gyro> {
         let scale = match self.gyro_per_code {
+            // A scale that rounds to nothing would be no gyro.
+            Some(step) if (step / Attitude::RATE_LSB_RAD_S * 16.0).abs() < 0.5 => {
+                return Err(Error::usage(
+                    format!("--gyro-per-code {step} rad/s is no rate"),
+                    "give the gyro's rad/s per ADC code, as its data sheet and the ADC say",
+                ));
+            }
             Some(step) => within(
                 "--gyro-per-code",
                 step / Attitude::RATE_LSB_RAD_S * 16.0,
@@ -140,6 +147,12 @@ impl BoardArgs {
             )?,
             None => 0.0,
         };
+        if self.gyro_zero > 1023 {
+            return Err(Error::usage(
+                format!("--gyro-zero {} is no ADC code", self.gyro_zero),
+                "give the gyro's code at rest, 0 to 1023",
+            ));
+        }
         Ok(Gyro {
             from_host: self.gyro_per_code.is_none(),
             zero: self.gyro_zero,

@@ -5,7 +5,9 @@ use super::{Person, StepOutcome};
 use crate::error::{Error, Result};
 use crate::link::bridge::bridged;
 use crate::link::{SerialLink, Session, cause_words, condition_words, fault_log};
-use handstand_shared::control_table::TORQUE_ENABLE;
+use handstand_shared::control_table::{
+    GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, TORQUE_ENABLE, TORQUE_LIMIT,
+};
 use handstand_shared::message::{
     ArmLimits, Cause, Command, Condition, Mode, Report, ServoList, StreamReport, Subject, Telemetry,
 };
@@ -32,7 +34,8 @@ pub(super) fn measured<L: SerialLink>(
     ids: &[u8],
     person: &mut dyn Person,
 ) -> Result<(StepOutcome, String)> {
-    if let (Check::LimitedTorque | Check::LinkLoss, Some(id)) = (check, ids.first())
+    if check.gives_torque()
+        && let Some(id) = ids.first()
         && !person.allows_torque(*id)?
     {
         return Ok((StepOutcome::NotDone, "torque was not allowed".to_string()));
@@ -44,6 +47,7 @@ pub(super) fn measured<L: SerialLink>(
         Check::Ticks => ticks(link, ids),
         Check::Stack => stack(link),
         Check::GyroZero => gyro_zero(link, ids),
+        Check::GoalTorque => goal_torque(link, ids),
         Check::LimitedTorque => limited_torque(link, ids),
         Check::LinkLoss => link_loss(link, ids),
     };
@@ -130,6 +134,26 @@ fn gyro_zero<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     Ok((is_steady, format!("code {mean:.1}, {least} to {most}")))
 }
 
+/// Torque is off before and after, whatever the goal does.
+fn goal_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
+    let Some(&id) = ids.first() else {
+        return Ok((false, "no servo".to_string()));
+    };
+    let mut servos = bridged(link)?;
+    servos.set(id, TORQUE_ENABLE, 0)?;
+    servos.set(id, TORQUE_LIMIT, TENTH.torque.0)?;
+    let position = servos.get(id, PRESENT_POSITION)?;
+    servos.set(id, GOAL_POSITION, position)?;
+    let torque = servos.get(id, TORQUE_ENABLE)?;
+    servos.set(id, TORQUE_ENABLE, 0)?;
+    let left = servos.get(id, TORQUE_ENABLE)?;
+    let found = match torque {
+        0 => "it does not: torque enable stays 0",
+        _ => "it does: torque enable becomes 1",
+    };
+    Ok((left == 0, found.to_string()))
+}
+
 fn limited_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     if let Some(id) = ids.first() {
         bridged(link)?.cm5_servo(*id)?;
@@ -146,9 +170,18 @@ fn limited_torque<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
     if let Some(other) = conditions().rev().find(|it| *it != Condition::StreamArmed) {
         return Ok((false, condition_words(other).to_string()));
     }
+    let moved = most - least;
+    let Some(&id) = ids.first() else {
+        return Ok((false, "no servo".to_string()));
+    };
+    let mut servos = bridged(session.link())?;
+    let held = [TORQUE_LIMIT, MOVING_SPEED].map(|register| servos.get(id, register));
+    let [torque, speed] = held;
+    let (torque, speed) = (torque?, speed?);
+    let has_limits = (torque, speed) == (TENTH.torque.0, TENTH.speed.0);
     Ok((
-        most - least <= STILL,
-        format!("it moved {} codes", most - least),
+        moved <= STILL && has_limits,
+        format!("it moved {moved} codes; it holds limits of {torque} and {speed}"),
     ))
 }
 

@@ -11,6 +11,7 @@ pub use steps::{STEPS, StepKind};
 use super::port::SerialLink;
 use crate::error::Result;
 use serde::Serialize;
+use steps::Check;
 
 /// What came of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -69,7 +70,10 @@ pub fn bring_up<L: SerialLink>(
                 };
                 (outcome, said)
             }
-            StepKind::Measured(check) => checks::measured(check, link, ids, person)?,
+            StepKind::Measured(check) => match stops(check, &results) {
+                Some(earlier) => (StepOutcome::NotDone, earlier),
+                None => checks::measured(check, link, ids, person)?,
+            },
         };
         let result = StepResult {
             id: step.id,
@@ -81,6 +85,21 @@ pub fn bring_up<L: SerialLink>(
         results.push(result);
     }
     Ok(results)
+}
+
+/// Why a step that gives torque is not done: an earlier one, which has to stop the robot, did not
+/// pass.
+fn stops(check: Check, results: &[StepResult]) -> Option<String> {
+    let open = (results.iter()).find(|result| result.outcome != StepOutcome::Passed)?;
+    let why = match open.outcome {
+        StepOutcome::Failed => "failed",
+        _ => "is not done",
+    };
+    let earlier = format!(
+        "no torque before every earlier step passed: `{}` {why}",
+        open.id
+    );
+    check.gives_torque().then_some(earlier)
 }
 
 /// The results as a page in Markdown, for the robot's papers.

@@ -32,8 +32,24 @@ pub enum Check {
     Ticks,
     Stack,
     GyroZero,
+    GoalTorque,
     LimitedTorque,
     LinkLoss,
+}
+
+impl Check {
+    /// Whether a servo may have torque in it.
+    pub fn gives_torque(self) -> bool {
+        match self {
+            Check::GoalTorque | Check::LimitedTorque | Check::LinkLoss => true,
+            Check::Firmware
+            | Check::Servos
+            | Check::Supply
+            | Check::Ticks
+            | Check::Stack
+            | Check::GyroZero => false,
+        }
+    }
 }
 
 /// All steps.
@@ -104,9 +120,18 @@ pub const STEPS: &[Step] = &[
         kind: StepKind::ByHand,
     },
     Step {
+        id: "goal",
+        title: "whether a goal switches torque on",
+        instruction: "Writes the first servo's position as its goal, at a tenth of its torque, and \
+                      reads torque enable; then switches torque off. Either answer is safe: the \
+                      firmware writes limits before goals.",
+        kind: StepKind::Measured(Check::GoalTorque),
+    },
+    Step {
         id: "torque",
         title: "one servo holds its position with a tenth of its torque",
-        instruction: "Arms the first servo alone, without goals, for a second.",
+        instruction: "Arms the first servo alone, without goals, for a second, and reads the limits \
+                      that it holds: 102 of torque, 1023 of speed.",
         kind: StepKind::Measured(Check::LimitedTorque),
     },
     Step {

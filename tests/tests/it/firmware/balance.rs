@@ -85,8 +85,9 @@ pub fn it_stands(bench: &mut impl SimulatedCm5, seconds: f64) {
     assert!(run.stood_s >= seconds - 1e-6, "{:.2} s", run.stood_s);
     assert_eq!(run.condition, Some(Condition::BalanceArmed));
     let doubtful = run.ticks.iter().filter(|tick| tick.or.is_some()).count();
+    // Those of arming are longer: their reports come later, and so does the attitude behind them.
     assert!(
-        doubtful <= 10,
+        doubtful <= 25,
         "{doubtful} ticks may have seen either attitude"
     );
     let (different, compared) = different(&plan, &run.ticks);

@@ -1,5 +1,6 @@
 //! Servos that give up, and servos of one id.
 
+use super::condition;
 use handstand_cm5_sim::{Bus, Servo};
 use handstand_shared::control_table::{MOVING_SPEED, TORQUE_ENABLE};
 use handstand_shared::dynamixel::ErrorBits;
@@ -149,6 +150,36 @@ pub fn a_servo_gives_up_while_balancing(bench: &mut impl SimulatedCm5, way: Give
     }
 }
 
+/// A servo loses its RAM while it is sent goals, so many ticks after arming: within two rounds of
+/// the housekeeping the robot is let down, and the servo named.
+pub fn a_restart_is_noticed(bench: &mut impl SimulatedCm5, id: u8, phase: u8) {
+    let goals = Command::Goals(Positions::pack([540; SERVOS]));
+    let go = |bench: &mut _, ticks: u8| {
+        for _ in 0..ticks {
+            say_it(bench, &goals);
+        }
+    };
+    arm(bench);
+    go(bench, 10 + phase);
+    bench.bus().servo(id).expect("18 servos").restart();
+    go(bench, 22);
+    let state = condition(bench);
+    let fault = Condition::Fault(Cause::TorqueLost);
+    assert!(
+        [Some(Condition::Soft), Some(fault)].contains(&state),
+        "servo {id}, phase {phase}: {state:?}"
+    );
+    go(bench, 20);
+    assert_eq!(condition(bench), Some(fault), "servo {id}, phase {phase}");
+    assert!(!bench.bus().any_torque());
+    assert_eq!(tripped(bench).map(|servo| servo.id), Some(id));
+}
+
+fn say_it(bench: &mut impl SimulatedCm5, command: &Command) {
+    bench.send(command);
+    bench.run_ms(10.0);
+}
+
 /// Eighteen servos and one more of this id.
 fn with_twin(id: u8) -> Bus {
     Bus::new((1..=18).chain([id]))
@@ -161,7 +192,13 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
     let others = (0..SERVOS).filter(|place| *place != 4);
     for place in others {
         let missing = run.reports.iter().filter(|(_, r)| !r.is_present(place));
-        assert_eq!(missing.count(), 0, "servo {}", place + 1);
+        // The end of a twin's long answer may meet the request to the next servo.
+        let most = if place == 5 {
+            run.reports.len() / 50
+        } else {
+            0
+        };
+        assert!(missing.count() <= most, "servo {}", place + 1);
     }
     let heard = run.reports.iter().filter(|(_, r)| r.is_present(4)).count();
     // While its motor interrupt holds one of them back, the other one is heard whole.
@@ -182,8 +219,8 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
         counted.garbled > 100 && counted.missed[4] > 100,
         "{counted:?}"
     );
-    let missed = counted.missed[3..6].iter().filter(|n| **n > 0);
-    assert_eq!(missed.count(), 1, "{counted:?}");
+    let (before, after) = (counted.missed[3], counted.missed[5]);
+    assert!(before == 0 && after <= 10, "{counted:?}");
 }
 
 pub fn twins_do_not_balance(bench: &mut impl SimulatedCm5, id: u8) {
@@ -234,6 +271,16 @@ fn a_servo_that_gives_up_lets_the_streaming_robot_down() {
 fn a_servo_that_gives_up_lets_the_balancing_robot_down() {
     for way in WAYS {
         a_servo_gives_up_while_balancing(&mut VirtualCm5::new(), way);
+    }
+}
+
+#[test]
+fn a_servo_that_restarts_under_goals_is_noticed_at_every_phase() {
+    for id in 1..=18 {
+        let mut rig = VirtualCm5::new();
+        for phase in 0..18 {
+            a_restart_is_noticed(&mut rig, id, phase);
+        }
     }
 }
 

@@ -18,13 +18,21 @@ use handstand_tests::bench::*;
 fn refused(rig: &mut VirtualCm5, command: Command) -> Option<Refusal> {
     rig.clear();
     let sequence = rig.send(&command);
-    rig.run_ms(30.0);
-    rig.reports()
-        .into_iter()
-        .find_map(|(_, report)| match report {
-            Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome.err()),
-            _ => None,
-        })?
+    // Torque comes on when all servos have said their limits.
+    for _ in 0..60 {
+        rig.run_ms(10.0);
+        let answer = rig
+            .reports()
+            .into_iter()
+            .find_map(|(_, report)| match report {
+                Report::Answer(answer) if answer.sequence == sequence => Some(answer.outcome.err()),
+                _ => None,
+            });
+        if let Some(outcome) = answer {
+            return outcome;
+        }
+    }
+    None
 }
 
 /// Greets it.

@@ -84,6 +84,7 @@ mod tests {
         let image = |flash, ram| Image {
             flash,
             ram,
+            stack: 0,
             forbidden: Vec::new(),
         };
         assert!(last.exceeded(&image(40_700, 716)).is_empty());

@@ -1,6 +1,7 @@
 //! What a built image takes, and what must not be in it.
 
 use super::build::Built;
+use super::stack;
 use super::toolchain::output;
 use std::process::Command;
 
@@ -16,6 +17,8 @@ pub struct Image {
     pub flash: usize,
     /// Bytes of RAM for static data; the rest is stack.
     pub ram: usize,
+    /// Bytes of RAM that the stack takes at most, by the code's calls and frames.
+    pub stack: usize,
     /// Symbols that must not be there.
     pub forbidden: Vec<String>,
 }
@@ -50,6 +53,7 @@ impl Image {
         Ok(Image {
             flash: section(".text") + section(".data") + section(".rodata"),
             ram: section(".data") + section(".bss") + section(".noinit"),
+            stack: stack::bound(built)?,
             forbidden: names
                 .filter(|name| is_forbidden(name))
                 .map(str::to_string)

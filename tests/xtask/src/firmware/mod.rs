@@ -3,6 +3,7 @@
 mod budget;
 mod build;
 mod image;
+mod stack;
 mod toolchain;
 
 pub use budget::Budget;

@@ -2,7 +2,7 @@
 
 use super::IDS;
 use super::judged::{Judged, list};
-use super::steps::{Step, Token};
+use super::steps::{ServoFault, Step, Token};
 use crate::rig::{bytes, plan};
 use handstand_cm5_sim::{Bus, HostBoard, SimulatedCm5, VirtualCm5};
 use handstand_firmware::app::State;
@@ -12,8 +12,9 @@ use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::plan::Plan;
 
-/// A frame that arrives during a tick is taken at its end: so much later at most, ms.
-pub(super) const TAKEN_MS: f64 = 25.0;
+/// A frame that arrives during a tick is taken at its end, and arming lasts 30 ticks of up to 18 ms:
+/// torque comes on so much later at most, ms.
+pub(super) const TAKEN_MS: f64 = 25.0 + 30.0 * 18.0;
 
 impl Judged {
     pub(super) fn step(&mut self, step: &Step) {
@@ -84,6 +85,7 @@ impl Judged {
                     self.odd.push(id);
                 }
                 self.servo(*at).faults.dead = *dead;
+                self.disturb(*at);
             }
             Step::Overload(at) => {
                 // Without torque there was nothing to give up: arming, which for balancing switches
@@ -102,11 +104,14 @@ impl Judged {
             Step::Noise(every_us) => {
                 let now_ns = self.cm5.board.now_ns();
                 let every_ns = every_us.map(|us| us * 1000);
+                self.has_noise = every_us.is_some();
+                (0..IDS.len()).for_each(|at| self.disturb(at));
                 self.cm5.board.bus.set_noise(now_ns, every_ns);
             }
             Step::Garbage(bytes) => {
                 self.garbage(bytes);
             }
+            Step::Servo(at, fault) => self.servo_fault(*at, *fault),
             Step::Restart(cause) => self.restart(*cause),
         }
         self.judge();
@@ -117,6 +122,7 @@ impl Judged {
         // adapter gives up what was begun.
         let now_ns = self.cm5.board.now_ns();
         self.cm5.board.bus.set_noise(now_ns, None);
+        self.end_noise();
         self.run(75.0);
         // What an adapter passed on may have spoilt the first.
         for _ in 0..3 {
@@ -159,21 +165,54 @@ impl Judged {
         for at in 0..IDS.len() {
             let servo = self.servo(at);
             servo.faults.dead = false;
+            servo.faults.corrupt_request = 0.0;
+            servo.faults.stray = 0.0;
+            servo.faults.late = 0.0;
             servo.temperature = 30.0;
             servo.supply_v = 9.6;
+            self.disturb(at);
             self.set_shaft(at, 512);
         }
         let now_ns = self.cm5.board.now_ns();
         self.cm5.board.bus.set_noise(now_ns, None);
+        self.end_noise();
         self.release_buttons();
         self.supply_ms = self.cm5.now_ms();
         self.hello(VERSION);
         self.send(&Command::Mode(mode));
+        // As long as it takes to ask all for their supply and mode.
         for _ in 0..16 {
             self.send(&Command::Attitude(Attitude::default()));
             self.run(8.0);
         }
         self.arm(Token::Last, ArmLimits::FULL);
+        for _ in 0..50 {
+            if self.cm5.app.is_armed() {
+                break;
+            }
+            self.send(&Command::Attitude(Attitude::default()));
+            self.run(8.0);
+        }
+    }
+
+    fn servo_fault(&mut self, at: usize, fault: ServoFault) {
+        self.disturb(at);
+        self.has_restarted[at] |= matches!(fault, ServoFault::Restarts);
+        let servo = self.servo(at);
+        match fault {
+            ServoFault::Restarts => servo.restart(),
+            ServoFault::Corrupt(share) => servo.faults.corrupt_request = share,
+            ServoFault::Stray(share) => servo.faults.stray = share,
+            ServoFault::Late(share) => servo.faults.late = share,
+            ServoFault::NeedsTime(ns) => servo.faults.write_ns = ns,
+            ServoFault::GoalSwitchesOn(does) => servo.goal_switches_on = does,
+        }
+    }
+
+    fn end_noise(&mut self) {
+        if std::mem::take(&mut self.has_noise) {
+            (0..IDS.len()).for_each(|at| self.disturb(at));
+        }
     }
 
     fn restart(&mut self, cause: u8) {

@@ -1,11 +1,13 @@
 //! The invariants, each checked after every step.
 
+use super::IDS;
 use super::acts::TAKEN_MS;
 use super::judged::Judged;
 use handstand_cm5_sim::SimulatedCm5;
 use handstand_firmware::app::{State, Torque};
-use handstand_shared::control_table::{GOAL_POSITION, TORQUE_LIMIT};
+use handstand_shared::control_table::{CCW_LIMIT, GOAL_POSITION, MOVING_SPEED, TORQUE_LIMIT};
 use handstand_shared::message::*;
+use handstand_shared::raw::MovingSpeed;
 
 impl Judged {
     pub(super) fn judge(&mut self) {
@@ -21,10 +23,14 @@ impl Judged {
             // Of two that came during one tick the first arms, or the second if the first was
             // refused: which one is not known here.
             let own = arms.filter(|(_, token, limits)| Some(*token) == fresh && limits.is_sound());
-            let arm = own.clone().max_by_key(|(_, _, limits)| limits.torque.0);
+            let all = own.clone().map(|(_, _, limits)| *limits);
+            let limits = all.reduce(|a, b| ArmLimits {
+                torque: a.torque.max(b.torque),
+                speed: MovingSpeed(a.speed.0.max(b.speed.0)),
+            });
             let first_ms = own.map(|(until_ms, ..)| until_ms - TAKEN_MS);
             let first_ms = first_ms.fold(f64::INFINITY, f64::min);
-            let Some((_, _, limits)) = arm.copied() else {
+            let Some(limits) = limits else {
                 panic!(
                     "armed by none of {:?}, the token being {fresh:?}",
                     self.arms
@@ -41,6 +47,8 @@ impl Judged {
             self.judge_armed(now_ms);
         }
         self.goals = self.goals_now();
+        let servos = self.cm5.board.bus.servos.iter();
+        self.had_torque = servos.map(|servo| servo.torque_is_on()).collect();
         self.was_streaming = self.cm5.app.state() == State::Stream(Torque::On);
         self.looked_ms = now_ms;
         let unfed_ms = self.cm5.board.longest_unfed_ns as f64 * 1e-6;
@@ -64,7 +72,7 @@ impl Judged {
             "armed at {lowest_v} V"
         );
         self.plan = self.cm5.app.plan_fingerprint();
-        self.limit = limits.torque.0;
+        self.limits = limits;
         self.gave_up.clear();
         self.off_ms = None;
         self.odd.clear();
@@ -79,14 +87,20 @@ impl Judged {
         let bus = &self.cm5.board.bus;
         let deaf = bus.servos.iter().filter(|servo| servo.faults.dead);
         self.odd.extend(deaf.map(|servo| servo.id()));
+        // Nor is what missed torque off before, and is not heard now.
+        let had_torque = self.had_torque.iter().zip(IDS).enumerate();
+        let unheard = had_torque.filter(|(at, (had, _))| **had && self.is_disturbed(*at));
+        let unheard: Vec<u8> = unheard.map(|(_, (_, id))| id).collect();
+        self.odd.extend(unheard);
     }
 
     /// Torque is off where nothing is armed, in every servo that hears.
     fn judge_torque(&self, now_ms: f64) {
         let Some(off_ms) = self.off_ms else { return };
-        for servo in &self.cm5.board.bus.servos {
+        for (at, servo) in self.cm5.board.bus.servos.iter().enumerate() {
             let id = servo.id();
-            let is_odd = servo.faults.dead || self.odd.contains(&id);
+            let may_have_missed = servo.faults.corrupt_request > 0.0;
+            let is_odd = may_have_missed || self.is_disturbed(at) || self.odd.contains(&id);
             assert!(
                 is_odd || !servo.torque_is_on(),
                 "servo {id} is torqued, {:.1} ms after torque off, in {:?}",
@@ -137,17 +151,21 @@ impl Judged {
             assert!(now_ms - since_ms <= 70.0, "a button does not stop it");
         }
         let periods = ((now_ms - self.looked_ms) / 10.0).ceil() as u16 + 1;
-        for (servo, before) in self.cm5.board.bus.servos.iter().zip(&self.goals) {
-            let id = servo.id();
-            let limit = servo.get(TORQUE_LIMIT);
-            if !servo.faults.dead && !self.odd.contains(&id) && servo.torque_is_on() {
-                assert!(limit <= self.limit, "servo {id}: torque limit {limit}");
+        for at in 0..IDS.len() {
+            let servo = &self.cm5.board.bus.servos[at];
+            if !self.odd.contains(&servo.id()) && servo.torque_is_on() {
+                self.judge_limits(at);
             }
+        }
+        let servos = self.cm5.board.bus.servos.iter().zip(&self.goals);
+        for (at, (servo, before)) in servos.enumerate() {
+            let id = servo.id();
             // Arming itself sets them to where the servos stand.
             if self.was_streaming && state == State::Stream(Torque::On) {
                 let step = servo.get(GOAL_POSITION).abs_diff(*before);
-                let is_deaf = servo.faults.dead || self.odd.contains(&id);
-                assert!(is_deaf || step <= 20 * periods, "a goal jumped by {step}");
+                // One that was silent goes on from where it stands.
+                let is_odd = self.is_disturbed(at) || self.odd.contains(&id);
+                assert!(is_odd || step <= 20 * periods, "a goal jumped by {step}");
             }
         }
         for id in &self.gave_up {
@@ -158,11 +176,34 @@ impl Judged {
                 .servos
                 .iter()
                 .find(|servo| servo.id() == *id);
-            let since = servo.is_some_and(|servo| servo.torque_is_on() && !servo.faults.dead);
+            let at = IDS.iter().position(|other| other == id);
+            let is_disturbed = at.is_some_and(|at| self.is_disturbed(at));
+            let since = servo.is_some_and(|servo| servo.torque_is_on() && !is_disturbed);
             assert!(
                 !since || self.odd.contains(id) || is_on,
                 "servo {id} was woken"
             );
         }
+    }
+
+    /// No servo with torque has more of it, or is faster, than arming named: one that lost its
+    /// registers is let go once it was read. Requests that it does not hear change nothing of it.
+    fn judge_limits(&mut self, at: usize) {
+        if self.has_restarted[at] && self.is_disturbed(at) {
+            return;
+        }
+        self.has_restarted[at] = false;
+        let servo = &self.cm5.board.bus.servos[at];
+        let (limit, speed) = (servo.get(TORQUE_LIMIT), servo.get(MOVING_SPEED));
+        let id = servo.id();
+        assert!(
+            limit <= self.limits.torque.0,
+            "servo {id}: torque limit {limit}"
+        );
+        let is_joint = servo.get(CCW_LIMIT) != 0;
+        assert!(
+            !is_joint || (1..=self.limits.speed.0).contains(&speed),
+            "servo {id}: speed {speed}"
+        );
     }
 }

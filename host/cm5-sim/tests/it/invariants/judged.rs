@@ -31,7 +31,15 @@ pub(super) struct Judged {
     pub(super) goals: Vec<u16>,
     pub(super) was_streaming: bool,
     pub(super) looked_ms: f64,
-    pub(super) limit: u16,
+    /// What arming named.
+    pub(super) limits: ArmLimits,
+    /// When each servo was last disturbed, ms.
+    pub(super) disturbed_ms: Vec<f64>,
+    pub(super) has_noise: bool,
+    /// Whether each servo restarted and may not have been read since.
+    pub(super) has_restarted: Vec<bool>,
+    /// Which servos had torque at the last look.
+    pub(super) had_torque: Vec<bool>,
     /// When the supply was changed last.
     pub(super) supply_ms: f64,
     /// Commands to arm that may still be taken: until when, token, limits.
@@ -69,7 +77,11 @@ impl Judged {
             goals: vec![512; IDS.len()],
             was_streaming: false,
             looked_ms: 0.0,
-            limit: 0,
+            limits: ArmLimits::NONE,
+            disturbed_ms: vec![f64::NEG_INFINITY; IDS.len()],
+            has_noise: false,
+            has_restarted: vec![false; IDS.len()],
+            had_torque: vec![false; IDS.len()],
             supply_ms: 0.0,
             arms: Vec::new(),
             gave_up: Vec::new(),
@@ -136,6 +148,22 @@ impl Judged {
             true => Some(self.out_ms.unwrap_or(now_ms)),
             false => None,
         };
+    }
+
+    /// A servo may do what it was told before, or what nobody told it, until it was read.
+    pub(super) fn disturb(&mut self, at: usize) {
+        self.disturbed_ms[at] = self.cm5.now_ms();
+    }
+
+    /// Whether the servo may not have been read yet since it was disturbed last, or is not read.
+    pub(super) fn is_disturbed(&self, at: usize) -> bool {
+        // Each is read in every second round of the housekeeping: of 18 servos, most of which are
+        // silent, those are 18 ticks of up to 18 ms.
+        const READ_MS: f64 = 350.0;
+        let faults = &self.cm5.board.bus.servos[at].faults;
+        let is_unsure = faults.corrupt_request + faults.stray + faults.late > 0.0;
+        let is_new = self.cm5.now_ms() - self.disturbed_ms[at] < READ_MS;
+        faults.dead || is_unsure || self.has_noise || is_new
     }
 
     pub(super) fn release_buttons(&mut self) {

@@ -84,10 +84,12 @@ fn torque_off_and_on_again_between_two_looks_is_a_new_arming() {
         Step::Chunk(0, false),
         Step::Hello(VERSION),
         Step::Mode(Mode::Stream),
+        Step::Wait(70.0),
         Step::Arm(Token::Last, ArmLimits::FULL),
+        Step::Wait(150.0),
     ];
     for step in &steps {
         judged.step(step);
     }
-    assert!(judged.armed, "the last step arms");
+    assert!(judged.armed, "it is armed again");
 }

@@ -16,6 +16,23 @@ pub(super) enum Token {
     Any(u16),
 }
 
+/// What real servos and their cables do.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum ServoFault {
+    /// It loses its RAM.
+    Restarts,
+    /// So many of the requests to it arrive corrupted.
+    Corrupt(f64),
+    /// So many of its answers have a stray byte before them.
+    Stray(f64),
+    /// So many of its answers come a millisecond late, and meet what is sent then.
+    Late(f64),
+    /// It ignores a write that comes so soon after another, ns.
+    NeedsTime(u64),
+    /// Whether a goal switches its torque on.
+    GoalSwitchesOn(bool),
+}
+
 /// What happens next.
 #[derive(Debug, Clone)]
 pub(super) enum Step {
@@ -46,6 +63,8 @@ pub(super) enum Step {
     Shaft(usize, u16),
     Noise(Option<u64>),
     Garbage(Vec<u8>),
+    /// A servo's faults.
+    Servo(usize, ServoFault),
     /// The controller restarts.
     Restart(u8),
 }
@@ -61,6 +80,18 @@ fn limits() -> impl Strategy<Value = ArmLimits> {
         speed: MovingSpeed(speed),
     });
     prop_oneof![3 => full, 1 => any]
+}
+
+fn servo_fault() -> impl Strategy<Value = ServoFault> {
+    let share = || prop_oneof![2 => Just(0.0), 1 => 0.0..0.5];
+    prop_oneof![
+        3 => Just(ServoFault::Restarts),
+        1 => share().prop_map(ServoFault::Corrupt),
+        1 => share().prop_map(ServoFault::Stray),
+        1 => share().prop_map(ServoFault::Late),
+        1 => (0u64..180_000).prop_map(ServoFault::NeedsTime),
+        1 => any::<bool>().prop_map(ServoFault::GoalSwitchesOn),
+    ]
 }
 
 impl ReferenceStateMachine for Steps {
@@ -106,6 +137,7 @@ impl ReferenceStateMachine for Steps {
             1 => servo.clone().prop_map(Step::Overload),
             1 => (servo.clone(), prop::bool::weighted(0.2)).prop_map(|(at, on)| Step::Hot(at, on)),
             1 => servo.clone().prop_map(Step::TorqueLost),
+            2 => (servo.clone(), servo_fault()).prop_map(|(at, fault)| Step::Servo(at, fault)),
             4 => (servo, prop_oneof![8 => 505u16..520, 1 => 0u16..1024])
                 .prop_map(|(at, code)| Step::Shaft(at, code)),
             1 => prop_oneof![3 => Just(None), 1 => (10u64..400).prop_map(Some)]
