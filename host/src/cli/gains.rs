@@ -23,10 +23,10 @@
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk};
 use handstand::model::Model;
-use handstand::report::{gains_json, verification_text};
+use handstand::report::{gains_json, margins_text, verification_text, with_margins};
 use handstand::study::{left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, DesignError};
+use handstand::synth::{Design, DesignError, LoopFigures};
 use handstand::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -98,6 +98,9 @@ pub struct GainsArgs {
     /// Write it as a C header
     #[arg(long, value_name = "FILE.h")]
     c: Option<PathBuf>,
+    /// What the names in the C header begin with, so that one file can include several
+    #[arg(long, value_name = "NAME", value_parser = c_name, default_value = export::C_NAME)]
+    name: String,
     /// Write K as CSV
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
@@ -114,6 +117,13 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("json" | "m") => Ok(path),
         _ => Err("end the name in .json (python-control and others) or .m (MATLAB, Octave)".into()),
+    }
+}
+
+fn c_name(text: &str) -> Result<String, String> {
+    match export::is_c_name(text) {
+        true => Ok(text.to_string()),
+        false => Err("give small letters, digits and _, a letter first".into()),
     }
 }
 
@@ -134,12 +144,13 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     bar.set_message("simulations of the loop");
     let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
     drop(bar);
-    let data = gains_json(&design, &made, &verified);
+    let figures = LoopFigures::of(&part, &design)?;
+    let data = with_margins(gains_json(&design, &made, &verified), figures.as_ref());
     talk.result(&data, || {
-        let design = export::text(&design);
         format!(
-            "{}\n{}",
-            design.trim_end(),
+            "{}\n\n{}\n{}",
+            export::text(&design).trim_end(),
+            margins_text(figures.as_ref(), &design),
             verification_text(&verified, whole.slides())
         )
     })?;
@@ -180,6 +191,7 @@ impl GainsArgs {
             (self.input_step.is_some(), "--input-step"),
             (self.rust.is_some(), "--rust"),
             (self.c.is_some(), "--c"),
+            (self.name != export::C_NAME, "--name"),
             (self.csv.is_some(), "--csv"),
             (self.state_space.is_some(), "--state-space"),
         ];
@@ -207,7 +219,7 @@ pub(super) fn write(
             put(file, &export::rust_file(design, fixed, made))?;
         }
         if let Some(file) = &args.c {
-            put(file, &export::c_header(design, fixed, made))?;
+            put(file, &export::c_header(design, fixed, made, &args.name))?;
         }
     }
     if let Some(file) = &args.csv {
