@@ -23,11 +23,12 @@
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk};
 use handstand::model::Model;
-use handstand::report::{gains_json, margins_text, verification_text, with_margins};
-use handstand::study::{left_out, verification_steps, verify};
+use handstand::report::{gains_json, margins_text, tuned_text, verification_text, with_margins};
+use handstand::study::{TUNING_STEPS, Tuned, left_out, tune, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, DesignError, LoopFigures};
+use handstand::synth::{Design, DesignError, LoopFigures, Request};
 use handstand::{Error, Result};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 mod request;
@@ -46,6 +47,9 @@ pub struct GainsArgs {
     /// Weight of the inputs, likewise [default: 1]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     r: Option<WeightArg>,
+    /// Search weights with the largest region under all effects of the model, margins kept
+    #[arg(long, conflicts_with_all = ["q", "r", "continuous"])]
+    tune: bool,
     /// Sampling time, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.01)]
     #[arg(allow_negative_numbers = true)]
@@ -129,7 +133,12 @@ fn c_name(text: &str) -> Result<String, String> {
 
 /// Designs, prints, writes the files.
 pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
-    let (part, request, made) = requested(args, talk).map_err(of_options)?;
+    let (part, mut request, made) = requested(args, talk).map_err(of_options)?;
+    let whole = Model::load(&args.model)?;
+    let tuned = tuned(args, &whole, &part, &request, talk)?;
+    if let Some(tuned) = &tuned {
+        request = tuned.request(&request);
+    }
     let design = match Design::of(&part, &request) {
         // Gains that exist and lose their stability in fixed point are the answer no.
         Err(error @ DesignError::UnstableWhenRounded { .. }) => {
@@ -138,14 +147,16 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
         }
         design => design.map_err(|error| of_options(error.into()))?,
     };
-    let whole = Model::load(&args.model)?;
     let left_out = left_out(&whole, &part, &design);
     let bar = talk.bar(verification_steps(&left_out) as u64);
     bar.set_message("simulations of the loop");
     let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
     drop(bar);
     let figures = LoopFigures::of(&part, &design)?;
-    let data = with_margins(gains_json(&design, &made, &verified), figures.as_ref());
+    let mut data = with_margins(gains_json(&design, &made, &verified), figures.as_ref());
+    if let Some(tuned) = &tuned {
+        data["tuned"] = json!(tuned);
+    }
     talk.result(&data, || {
         format!(
             "{}\n\n{}\n{}",
@@ -156,6 +167,25 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     })?;
     write(args, &design, &made, &data, talk)?;
     Ok(ExitStatus::answer(verified.stabilised))
+}
+
+/// Weights for `--tune`, and what to say of them on stderr.
+fn tuned(
+    args: &GainsArgs,
+    whole: &Model,
+    part: &Model,
+    request: &Request,
+    talk: &Talk,
+) -> Result<Option<Tuned>> {
+    if !args.tune {
+        return Ok(None);
+    }
+    let bar = talk.bar(TUNING_STEPS as u64);
+    bar.set_message("weights tried");
+    let tuned = tune(whole, part, request, &|| bar.inc(1)).map_err(of_options)?;
+    drop(bar);
+    talk.say(&tuned_text(&tuned));
+    Ok(Some(tuned))
 }
 
 /// What lies in the options' numbers is a request that makes no sense.
@@ -178,6 +208,7 @@ impl GainsArgs {
         let given = [
             (self.q.is_some(), "--q"),
             (self.r.is_some(), "--r"),
+            (self.tune, "--tune"),
             (self.ts != 0.01, "--ts"),
             (self.delay.is_some(), "--delay"),
             (!matches!(self.pose, Pose::Upright), "--pose"),

@@ -24,6 +24,7 @@ mod signatures;
 mod tests;
 mod text;
 mod traces;
+mod tuned;
 mod verification;
 mod waterfall;
 mod words;
@@ -40,6 +41,7 @@ pub use raw_plot::{raw_html, raw_text};
 pub use refitted::{refitted_json, refitted_text};
 pub(crate) use signatures::chart as signature_chart;
 pub use text::diagnosis_text;
+pub use tuned::tuned_text;
 pub use verification::verification_text;
 
 use crate::compare::{Comparison, SignalError};

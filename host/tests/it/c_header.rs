@@ -201,13 +201,12 @@ fn two_headers_in_one_file_compile_as_c_and_c_plus_plus_without_a_warning() {
         ("c++", "-std=c++17", "two.cpp"),
     ] {
         let built = bench.path("two");
-        silent(Command::new(compiler).args(STRICT).args([
-            standard,
-            "-O2",
-            "-o",
-            &built,
-            &bench.path(file),
-        ]));
+        silent(
+            Command::new(compiler)
+                .args(STRICT)
+                .args([standard, "-O2", "-o"])
+                .args([&built, &bench.path(file)]),
+        );
         let ran = Command::new(&built).status().unwrap();
         assert_eq!(ran.code(), Some(0), "{compiler} {standard}");
     }
@@ -228,7 +227,8 @@ fn the_avr_s_compiler_takes_it_with_its_tables_in_flash() {
                 .args(STRICT)
                 .args(["-mmcu=atmega2561", "-std=c99", "-Os", "-c"])
                 .args(flags)
-                .args(["-o", &object, &bench.path("two.c")]),
+                .arg("-o")
+                .args([&object, &bench.path("two.c")]),
         );
     }
 }

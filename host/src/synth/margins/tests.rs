@@ -1,6 +1,9 @@
-use super::{LoopMargin, Margins, OpenLoop};
+use super::{DesignMargins, LoopMargin, Margins, OpenLoop, design_margins};
+use crate::model::Model;
+use crate::synth::{Design, Request, Sensors, Time, Weight};
 use nalgebra::DMatrix;
 use serde_json::Value;
+use std::path::Path;
 
 /// What python-control finds, by `tests/peers/margins.py`.
 const REFERENCE: &str = include_str!("../../../tests/data/margins.json");
@@ -135,4 +138,75 @@ fn a_loop_that_is_not_stable_has_none() {
         ts_s: Some(0.01),
     };
     assert_eq!(open.margins().unwrap(), None);
+}
+
+fn of_the_paper_s_robot(change: impl Fn(&mut Request)) -> DesignMargins {
+    let text = include_str!("../../../models/handstand.toml");
+    let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
+    let mut request = Request::standard(&model);
+    change(&mut request);
+    let design = Design::of(&model, &request).unwrap();
+    design_margins(&model, &design).unwrap().unwrap()
+}
+
+fn near(found: f64, expected: f64, most: f64) {
+    assert!((found - expected).abs() <= most, "{found} {expected}");
+}
+
+/// Figures of an independent computation; `handstand study sweep supply` flips at 7.75 to 7.78 V.
+#[test]
+fn the_paper_s_weights_are_fragile_and_others_are_not() {
+    let paper = of_the_paper_s_robot(|_| {});
+    near(paper.inputs.common.gain[0], 0.7938829160, 1e-9);
+    near(paper.inputs.common.gain[1], 1.8845609175, 1e-9);
+    near(paper.supply.unwrap().lowest_v, 7.78, 0.005);
+    // The plant sampled with the later input, by matrix exponentials and bisection.
+    near(paper.inputs.common.delay_s.unwrap(), 0.008790450805, 1e-9);
+    near(paper.inputs.disk.alpha, 0.22981, 1e-4);
+    near(paper.inputs.disk.gain_db(), 2.005, 1e-3);
+    near(paper.inputs.disk.phase_rad().to_degrees(), 13.11, 0.01);
+
+    let spared = of_the_paper_s_robot(|request| {
+        request.q = Weight::Diagonal(vec![1.0, 1.0, 1.0, 0.01, 0.01, 0.01]);
+    });
+    near(spared.inputs.common.gain[0], 0.496, 5e-4);
+    near(spared.inputs.common.gain[1], 2.67, 5e-3);
+    near(spared.inputs.disk.alpha, 0.67, 5e-3);
+    near(spared.inputs.disk.phase_rad().to_degrees(), 37.0, 0.5);
+}
+
+/// The past inputs of the law are those that it asked for, whatever became of them.
+#[test]
+fn a_compensated_delay_narrows_the_gains() {
+    let late = of_the_paper_s_robot(|request| {
+        request.time = Time::Sampled {
+            ts_s: 0.01,
+            delay_s: Some(0.01),
+        };
+    });
+    near(late.inputs.common.gain[0], 0.8874153869, 1e-9);
+    near(late.inputs.common.gain[1], 1.3113741753, 1e-9);
+    let supply = late.supply.unwrap();
+    near(supply.lowest_v, 8.70, 0.01);
+    near(supply.highest_v, 12.85, 0.01);
+    let common = late.inputs.common.delay_s.unwrap();
+    assert!(common > 1e-4 && common < 0.01, "{common}");
+}
+
+#[test]
+fn a_filter_costs_margin() {
+    let filtered = of_the_paper_s_robot(|request| {
+        request.sensors = Some(Sensors {
+            position_step_rad: 300f64.to_radians() / 1024.0,
+            gyro_step_rad_s: 10f64.to_radians(),
+            process: None,
+        });
+    });
+    near(filtered.inputs.common.gain[0], 0.865, 5e-4);
+    near(filtered.inputs.common.gain[1], 1.20, 5e-3);
+    // A loop broken in all channels is lost at the same common gain wherever it is broken.
+    let sensors = filtered.sensors.unwrap();
+    near(sensors.common.gain[0], filtered.inputs.common.gain[0], 1e-6);
+    near(sensors.common.gain[1], filtered.inputs.common.gain[1], 1e-6);
+    assert_eq!(sensors.single.len(), 4);
 }
