@@ -185,7 +185,8 @@ mod tests {
     #[test]
     fn nothing_worse_than_the_own_weights_is_chosen() {
         let own = tried(0.23, 0.04);
-        let choose = |others: &[Tried]| Tuned::choose(&[&[own.clone()], others].concat());
+        let choose =
+            |others: &[Tried]| Tuned::choose(&[std::slice::from_ref(&own), others].concat());
         assert_eq!(choose(&[tried(0.9, 0.039), tried(0.22, 0.2)]), 0);
         assert_eq!(choose(&[tried(0.3, 0.2), tried(0.7, 0.05)]), 2);
         assert_eq!(choose(&[tried(0.3, 0.05), tried(0.25, 0.2)]), 2);
