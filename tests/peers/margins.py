@@ -2,8 +2,8 @@
 
 Writes `host/tests/data/margins.json` on stdout: per loop A, B, K of x(k+1) = A x + B u, u = -K x, and what
 python-control finds of L = K (zI - A)^-1 B: `stability_margins` of each channel with the others closed (all crossings,
-those at the ends of the circle added, reduced to the nearest), `disk_margins`, `linfnorm` of S and T. Common margins of several channels are not in
-python-control: they are eigenvalues of A - g B K, by bisection, and of L on the circle.
+those at the ends of the circle added, reduced to the nearest), `disk_margins`, `linfnorm` of S and T. Common margins
+of several channels are not in python-control: they are eigenvalues of A - g B K, by bisection, and of L on the circle.
 
     VENV/bin/pip install control==0.10.2 slycot==0.7.1 mpmath
     VENV/bin/python margins.py > ../../host/tests/data/margins.json

@@ -39,7 +39,9 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
             supply.nominal_v, supply.lowest_v
         ));
     }
-    lines.extend(lean_lines(stiffness, design));
+    if let Some(stiffness) = stiffness {
+        lines.extend(lean_lines(stiffness, design));
+    }
     if is_low(&margins.inputs) || margins.sensors.as_ref().is_some_and(is_low) {
         lines.push(format!(
             "LOW MARGINS: below {} dB or {} deg in all channels at once; weigh the speeds less or \
@@ -52,7 +54,7 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
 
 /// Gain, phase and delay of all alike and of each alone, the disk, the peaks.
 fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
-    let mut lines = vec![format!("{title:<22}gain              phase       delay")];
+    let mut lines = vec![format!("{title:<24}gain              phase       delay")];
     let mut put = |name: &str, of: &LoopMargin| {
         let above = match of.gain[1].is_finite() {
             true => format!("{:.3}", of.gain[1]),
@@ -65,7 +67,7 @@ fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
                 .map(|rad| format!("{:.1} deg", rad.to_degrees())),
         );
         let delay = or_any(of.delay_s.map(|s| format!("{:.1} ms", 1e3 * s)));
-        lines.push(format!("  {name:<20}{gain:<18}{phase:<12}{delay}"));
+        lines.push(format!("  {name:<22}{gain:<18}{phase:<12}{delay}"));
     };
     put("all alike", &margins.common);
     if channels.len() > 1 {
@@ -75,7 +77,7 @@ fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
     }
     let disk = &margins.disk;
     lines.push(format!(
-        "  {:<20}{:<18}{:<12}disk margin {:.3} at {:.3} rad/s",
+        "  {:<22}{:<18}{:<12}disk margin {:.3} at {:.3} rad/s",
         "each in its own way",
         match disk.gain().is_finite() {
             true => format!("±{:.1} dB", disk.gain_db()),
@@ -148,17 +150,20 @@ pub fn margins_json(figures: Option<&LoopFigures>) -> Value {
             "highest_v": supply.highest_v,
         })
     });
-    let zone = stiffness.lean_per_dead_zone.as_ref();
+    let stiffness = stiffness.as_ref().map(|stiffness| {
+        let zone = stiffness.lean_per_dead_zone.as_ref();
+        json!({
+            "lean_per_torque": rows(&stiffness.lean_per_torque),
+            "lean_per_dead_zone": zone.map(|lean| lean.iter().copied().collect::<Vec<f64>>()),
+        })
+    });
     json!({
         "margins": {
             "inputs": of_place(&margins.inputs),
             "sensors": margins.sensors.as_ref().map(of_place),
             "supply": supply,
         },
-        "stiffness": {
-            "lean_per_torque": rows(&stiffness.lean_per_torque),
-            "lean_per_dead_zone": zone.map(|lean| lean.iter().copied().collect::<Vec<f64>>()),
-        },
+        "stiffness": stiffness,
     })
 }
 

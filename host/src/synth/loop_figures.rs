@@ -11,8 +11,8 @@ use crate::model::Model;
 pub struct LoopFigures {
     /// How much the loop bears.
     pub margins: DesignMargins,
-    /// How far it leans.
-    pub stiffness: Stiffness,
+    /// How far it leans; none with a filter, whose estimate a lasting torque leads astray.
+    pub stiffness: Option<Stiffness>,
 }
 
 impl LoopFigures {
@@ -27,7 +27,10 @@ impl LoopFigures {
         };
         Ok(Some(LoopFigures {
             margins,
-            stiffness: stiffness(model, design)?,
+            stiffness: match design.estimator {
+                Some(_) => None,
+                None => Some(stiffness(model, design)?),
+            },
         }))
     }
 }
