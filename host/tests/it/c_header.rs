@@ -181,13 +181,12 @@ fn two_headers() -> Bench {
     bench
 }
 
-const STRICT: [&str; 8] = [
+const STRICT: [&str; 7] = [
     "-Wall",
     "-Wextra",
     "-Wconversion",
     "-Wsign-conversion",
     "-Wundef",
-    "-Wunused-const-variable=2",
     "-pedantic",
     "-Werror",
 ];
@@ -204,6 +203,8 @@ fn two_headers_in_one_file_compile_as_c_and_c_plus_plus_without_a_warning() {
         silent(
             Command::new(compiler)
                 .args(STRICT)
+                // The AVR's compiler is often too old for it.
+                .arg("-Wunused-const-variable=2")
                 .args([standard, "-O2", "-o"])
                 .args([&built, &bench.path(file)]),
         );
