@@ -16,13 +16,13 @@ use rand::Rng as _;
 use serde::Serialize;
 
 /// Runs from random starts behind each judgement.
-const RUNS: u64 = 40;
+const RUNS: u64 = 60;
 
 /// Halvings of the interval in which the shortest half-axis ends.
-const HALVINGS: usize = 6;
+const HALVINGS: usize = 7;
 
 /// Judgements of [`ellipsoid`] at most.
-pub(super) const ELLIPSOID_JUDGEMENTS: usize = HALVINGS + 1;
+pub(super) const ELLIPSOID_JUDGEMENTS: usize = HALVINGS + 2;
 
 /// Seed of the starts, apart from those of the cube.
 const SEED: u64 = 2;
@@ -106,22 +106,13 @@ pub(super) fn ellipsoid(
         let outcomes = outcomes(&starts)?;
         Ok(outcomes.iter().filter(|one| one.stabilised).count())
     };
-    let mut inside = 0;
     let enough = |count: usize| count as f64 >= STABILISED_SHARE * RUNS as f64;
-    let widest = stabilised(LARGEST_REGION_RAD)?;
-    let open = enough(widest);
-    if open {
-        inside = widest;
-    }
+    let open = enough(stabilised(LARGEST_REGION_RAD)?);
     let shortest_rad = match open {
         true => LARGEST_REGION_RAD,
         false => {
             bisect(0.0, LARGEST_REGION_RAD, HALVINGS, |shortest_rad| {
-                let count = stabilised(shortest_rad)?;
-                if enough(count) {
-                    inside = count;
-                }
-                Ok(enough(count))
+                Ok(enough(stabilised(shortest_rad)?))
             })?
             .0
         }
@@ -137,7 +128,7 @@ pub(super) fn ellipsoid(
             .collect(),
         open,
         runs: RUNS as usize,
-        stabilised: inside,
+        stabilised: stabilised(shortest_rad)?,
     }))
 }
 
