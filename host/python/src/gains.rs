@@ -6,10 +6,10 @@ use crate::model::Model;
 use crate::value::plain;
 use crate::work::{self, WorkReport};
 use handstand::fitting::Progress;
-use handstand::report::gains_json;
+use handstand::report::{gains_json, margins_json, margins_text, with_margins};
 use handstand::study::{Verification, left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, Request, Time, Weight, balanced};
+use handstand::synth::{Design, LoopFigures, Request, Time, Weight, balanced};
 use nalgebra::DMatrix;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -25,6 +25,7 @@ pub struct Gains {
     design: Design,
     made: Provenance,
     verification: Verification,
+    figures: Option<LoopFigures>,
 }
 
 /// Gains that balance a model at a pose. The loop is then simulated with every effect of the model,
@@ -98,11 +99,12 @@ pub fn gains(
     let found = work::run(py, progress, move |report| {
         designed(&model, &request, report)
     })?;
-    let (design, verification) = found.map_err(exception)?;
+    let (design, verification, figures) = found.map_err(exception)?;
     Ok(Gains {
         design,
         made,
         verification,
+        figures,
     })
 }
 
@@ -110,7 +112,7 @@ fn designed(
     model: &Model,
     request: &Request,
     report: &WorkReport,
-) -> handstand::Result<(Design, Verification)> {
+) -> handstand::Result<(Design, Verification, Option<LoopFigures>)> {
     let model = &model.inner;
     let design = Design::of(model, request)?;
     let left_out = left_out(model, model, &design);
@@ -126,7 +128,8 @@ fn designed(
         });
     };
     let verification = verify(model, &design, request, &left_out, &tell)?;
-    Ok((design, verification))
+    let figures = LoopFigures::of(model, &design)?;
+    Ok((design, verification, figures))
 }
 
 /// A weight: a number, a diagonal or a matrix.
@@ -219,10 +222,25 @@ impl Gains {
         self.verification.stays_uncontrolled
     }
 
-    /// The header of the fixed-point law for C.
-    fn c_header(&self) -> PyResult<String> {
+    /// Gain, phase and delay that the linear loop bears, its disk margin and the peaks of S and T, at
+    /// the inputs: `margins` of `handstand gains --json`; `None` of a loop that is not stable.
+    #[getter]
+    fn margins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &margins_json(self.figures.as_ref())["margins"])
+    }
+
+    /// The header of the fixed-point law for C; its names begin with `name`, so that one file can
+    /// include several.
+    #[pyo3(signature = (name="gains"))]
+    fn c_header(&self, name: &str) -> PyResult<String> {
         let fixed = self.fixed()?;
-        Ok(export::c_header(&self.design, fixed, &self.made))
+        if !export::is_c_name(name) {
+            return Err(usage(
+                format!("`{name}` begins no names of C"),
+                "give small letters, digits and _, a letter first",
+            ));
+        }
+        Ok(export::c_header(&self.design, fixed, &self.made, name))
     }
 
     /// The fixed-point law for Rust.
@@ -235,7 +253,10 @@ impl Gains {
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(
             py,
-            &gains_json(&self.design, &self.made, &self.verification),
+            &with_margins(
+                gains_json(&self.design, &self.made, &self.verification),
+                self.figures.as_ref(),
+            ),
         )
     }
 
@@ -245,7 +266,8 @@ impl Gains {
     }
 
     fn __str__(&self) -> String {
-        export::text(&self.design)
+        let margins = margins_text(self.figures.as_ref(), &self.design);
+        format!("{}\n\n{margins}", export::text(&self.design).trim_end())
     }
 
     fn __repr__(&self) -> String {

@@ -25,7 +25,9 @@ def test_sampled_gains_stabilise_the_simulated_loop() -> None:
     said = found.to_dict()["verification"]
     assert said["region_open"] == found.region_open
     assert said["stays_uncontrolled"] == found.stays_uncontrolled
-    assert "#include" in found.c_header()
+    assert "#include" in found.c_header() and "WALK_STATES" in found.c_header("walk")
+    assert 0.7 < found.margins["inputs"]["common"]["gain"][0] < 1.0
+    assert found.to_dict()["margins"] == found.margins
     assert found.k.shape[1] == len(found.states) == len(found.x0)
 
 

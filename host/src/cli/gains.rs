@@ -23,11 +23,12 @@
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk};
 use handstand::model::Model;
-use handstand::report::{gains_json, verification_text};
-use handstand::study::{left_out, verification_steps, verify};
+use handstand::report::{gains_json, margins_text, tuned_text, verification_text, with_margins};
+use handstand::study::{TUNING_STEPS, Tuned, left_out, tune, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, DesignError};
+use handstand::synth::{Design, DesignError, LoopFigures, Request};
 use handstand::{Error, Result};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 mod request;
@@ -46,6 +47,9 @@ pub struct GainsArgs {
     /// Weight of the inputs, likewise [default: 1]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     r: Option<WeightArg>,
+    /// Search weights with the largest region under all effects of the model, margins kept
+    #[arg(long, conflicts_with_all = ["q", "r", "continuous"])]
+    tune: bool,
     /// Sampling time, s
     #[arg(long, value_name = "SECONDS", default_value_t = 0.01)]
     #[arg(allow_negative_numbers = true)]
@@ -98,6 +102,9 @@ pub struct GainsArgs {
     /// Write it as a C header
     #[arg(long, value_name = "FILE.h")]
     c: Option<PathBuf>,
+    /// What the names in the C header begin with, so that one file can include several
+    #[arg(long, value_name = "NAME", value_parser = c_name, default_value = export::C_NAME)]
+    name: String,
     /// Write K as CSV
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
@@ -117,9 +124,21 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
     }
 }
 
+fn c_name(text: &str) -> Result<String, String> {
+    match export::is_c_name(text) {
+        true => Ok(text.to_string()),
+        false => Err("give small letters, digits and _, a letter first".into()),
+    }
+}
+
 /// Designs, prints, writes the files.
 pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
-    let (part, request, made) = requested(args, talk).map_err(of_options)?;
+    let (part, mut request, made) = requested(args, talk).map_err(of_options)?;
+    let whole = Model::load(&args.model)?;
+    let tuned = tuned(args, &whole, &part, &request, talk)?;
+    if let Some(tuned) = &tuned {
+        request = tuned.request(&request);
+    }
     let design = match Design::of(&part, &request) {
         // Gains that exist and lose their stability in fixed point are the answer no.
         Err(error @ DesignError::UnstableWhenRounded { .. }) => {
@@ -128,23 +147,45 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
         }
         design => design.map_err(|error| of_options(error.into()))?,
     };
-    let whole = Model::load(&args.model)?;
     let left_out = left_out(&whole, &part, &design);
     let bar = talk.bar(verification_steps(&left_out) as u64);
     bar.set_message("simulations of the loop");
     let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
     drop(bar);
-    let data = gains_json(&design, &made, &verified);
+    let figures = LoopFigures::of(&part, &design)?;
+    let mut data = with_margins(gains_json(&design, &made, &verified), figures.as_ref());
+    if let Some(tuned) = &tuned {
+        data["tuned"] = json!(tuned);
+    }
     talk.result(&data, || {
-        let design = export::text(&design);
         format!(
-            "{}\n{}",
-            design.trim_end(),
+            "{}\n\n{}\n{}",
+            export::text(&design).trim_end(),
+            margins_text(figures.as_ref(), &design),
             verification_text(&verified, whole.slides())
         )
     })?;
     write(args, &design, &made, &data, talk)?;
     Ok(ExitStatus::answer(verified.stabilised))
+}
+
+/// Weights for `--tune`, and what to say of them on stderr.
+fn tuned(
+    args: &GainsArgs,
+    whole: &Model,
+    part: &Model,
+    request: &Request,
+    talk: &Talk,
+) -> Result<Option<Tuned>> {
+    if !args.tune {
+        return Ok(None);
+    }
+    let bar = talk.bar(TUNING_STEPS as u64);
+    bar.set_message("weights tried");
+    let tuned = tune(whole, part, request, &|| bar.inc(1)).map_err(of_options)?;
+    drop(bar);
+    talk.say(&tuned_text(&tuned));
+    Ok(Some(tuned))
 }
 
 /// What lies in the options' numbers is a request that makes no sense.
@@ -167,6 +208,7 @@ impl GainsArgs {
         let given = [
             (self.q.is_some(), "--q"),
             (self.r.is_some(), "--r"),
+            (self.tune, "--tune"),
             (self.ts != 0.01, "--ts"),
             (self.delay.is_some(), "--delay"),
             (!matches!(self.pose, Pose::Upright), "--pose"),
@@ -180,6 +222,7 @@ impl GainsArgs {
             (self.input_step.is_some(), "--input-step"),
             (self.rust.is_some(), "--rust"),
             (self.c.is_some(), "--c"),
+            (self.name != export::C_NAME, "--name"),
             (self.csv.is_some(), "--csv"),
             (self.state_space.is_some(), "--state-space"),
         ];
@@ -207,7 +250,7 @@ pub(super) fn write(
             put(file, &export::rust_file(design, fixed, made))?;
         }
         if let Some(file) = &args.c {
-            put(file, &export::c_header(design, fixed, made))?;
+            put(file, &export::c_header(design, fixed, made, &args.name))?;
         }
     }
     if let Some(file) = &args.csv {

@@ -51,6 +51,7 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
         ),
         false => "There is no cube of starts of which 95 % are stabilised.".to_string(),
     });
+    lines.extend(ellipsoid(verified, slides));
     if !verified.without.is_empty() {
         let place = |without: &Without| match without.joint {
             Some(joint) => format!("{} at joint {joint}", without.effect),
@@ -73,6 +74,25 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
         });
     }
     lines.join("\n")
+}
+
+/// The region's shape: how far along each of its axes, and where it is weak.
+fn ellipsoid(verified: &Verification, slides: bool) -> Option<String> {
+    let ellipsoid = verified.ellipsoid.as_ref()?;
+    let axes = ellipsoid.half_axes_rad.iter();
+    let axes: Vec<String> = axes.map(|rad| format!("{:.1}", rad.to_degrees())).collect();
+    let weak = ellipsoid.directions.first()?.iter();
+    let weak: Vec<String> = weak.map(|share| format!("{share:+.2}")).collect();
+    Some(format!(
+        "Ellipsoid of starts of which 95 % are stabilised: half-axes {}{} deg{}, weak along ({}); \
+         {} of {} runs within it.",
+        if ellipsoid.open { "at least " } else { "" },
+        axes.join(", "),
+        if slides { " (1 deg as 17.5 mm)" } else { "" },
+        weak.join(", "),
+        ellipsoid.stabilised,
+        ellipsoid.runs
+    ))
 }
 
 /// That the robot stays without control as well, if it does.

@@ -9,6 +9,7 @@
 
 mod case;
 mod conditions;
+mod ellipsoid;
 mod error;
 mod journal;
 mod judge;
@@ -27,6 +28,7 @@ mod response;
 mod shard;
 mod summary;
 mod sweep;
+mod tune;
 mod verify;
 
 #[cfg(test)]
@@ -34,6 +36,7 @@ mod tests;
 
 pub use case::{Case, Control, Designed};
 pub use conditions::{CONDITIONS, LoopCondition, NonIdeality, condition};
+pub use ellipsoid::Ellipsoid;
 pub use error::StudyError;
 pub use journal::{Header, Journal};
 pub use judge::{Figures, Judging, STABILISED_SHARE, judge, outcomes};
@@ -54,4 +57,5 @@ pub use response::{LoopResponse, response};
 pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
+pub use tune::{TUNING_STEPS, Tried, Tuned, tune};
 pub use verify::{UndesignedEffect, Verification, Without, left_out, verification_steps, verify};

@@ -12,7 +12,7 @@ const TILT_STEP_DEG: f64 = 0.1;
 const TILT_MOST_DEG: f64 = 20.0;
 
 /// Largest cube that is searched, rad.
-const LARGEST_REGION_RAD: f64 = 16.0 * std::f64::consts::PI / 180.0;
+pub(super) const LARGEST_REGION_RAD: f64 = 16.0 * std::f64::consts::PI / 180.0;
 
 /// Halvings of the interval in which a region ends.
 const HALVINGS: usize = 6;

@@ -1,6 +1,7 @@
 //! Verification of a design: the loop simulated with every effect of the model, those that the
 //! design leaves out included.
 
+use super::ellipsoid::{ELLIPSOID_JUDGEMENTS, Ellipsoid, ellipsoid};
 use super::judge::{Figures, STABILISED_SHARE};
 use super::region::{REGION_JUDGEMENTS, Region, largest};
 use crate::effects::Effect;
@@ -38,7 +39,10 @@ pub struct Verification {
     pub region_rad: f64,
     /// Whether it may be larger still: the search ends there.
     pub region_open: bool,
-    /// The same without the effects that the design leaves out.
+    /// The ellipsoid of starts, in the shape that the Riccati equation gives it; none if there is
+    /// none.
+    pub ellipsoid: Option<Ellipsoid>,
+    /// The cube without the effects that the design leaves out.
     pub region_as_designed_rad: f64,
     /// Whether that may be larger still.
     pub region_as_designed_open: bool,
@@ -104,7 +108,7 @@ pub fn verification_steps(left_out: &[UndesignedEffect]) -> usize {
         count @ 0..2 => 1 + count,
         count => 2 + count,
     };
-    2 + regions * REGION_JUDGEMENTS
+    2 + regions * REGION_JUDGEMENTS + ELLIPSOID_JUDGEMENTS
 }
 
 /// Simulates the loop of a design from random starts around its pose, the same every time. The
@@ -132,6 +136,7 @@ pub fn verify(
     let none: Vec<Vec<f64>> = gains.iter().map(|row| vec![0.0; row.len()]).collect();
     let uncontrolled = tested.figures(&closed, &none, NEAR_RAD);
     let region = tested.region(&[])?;
+    let ellipsoid = tested.ellipsoid(&closed, &gains)?;
     let mut without = Vec::new();
     for one in left_out {
         let region = tested.region(&[*one])?;
@@ -157,10 +162,38 @@ pub fn verify(
         uncontrolled,
         region_rad: region.spread_rad,
         region_open: region.open,
+        ellipsoid,
         region_as_designed_rad: as_designed.spread_rad,
         region_as_designed_open: as_designed.open,
         without,
     })
+}
+
+/// Figures of the starts near the pose, and the region, empty if those are not stabilised.
+///
+/// # Errors
+/// As [`verify`].
+pub(super) fn stabilised_from(
+    model: &Model,
+    design: &Design,
+    request: &Request,
+) -> Result<(Figures, Region)> {
+    let tested = Tested {
+        model,
+        design,
+        request,
+        done: &|| (),
+    };
+    let closed = tested.closed_loop(&[])?;
+    let near = tested.figures(&closed, &rows(&design.gains.k), NEAR_RAD);
+    let region = match near.stabilised_share >= STABILISED_SHARE {
+        true => tested.region(&[])?,
+        false => Region {
+            spread_rad: 0.0,
+            open: false,
+        },
+    };
+    Ok((near, region))
 }
 
 struct Tested<'a> {
@@ -197,6 +230,21 @@ impl Tested<'_> {
         let figures = Figures::of(&closed.run_all(&controller, &starts, SECONDS, 1));
         (self.done)();
         figures
+    }
+
+    fn ellipsoid(&self, closed: &ClosedLoop, gains: &[Vec<f64>]) -> Result<Option<Ellipsoid>> {
+        let u0 = &self.design.u0;
+        let controller = StateFeedback::new(self.model.link_count(), gains.to_vec()).feeding(u0);
+        ellipsoid(self.model, self.design, |starts| {
+            let starts = starts.iter().cloned().map(|start| InitialState {
+                command: u0.clone(),
+                ..start
+            });
+            let starts: Vec<InitialState> = starts.collect();
+            let outcomes = closed.run_all(&controller, &starts, SECONDS, 1);
+            (self.done)();
+            Ok(outcomes)
+        })
     }
 
     fn region(&self, without: &[UndesignedEffect]) -> Result<Region> {

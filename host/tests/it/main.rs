@@ -8,6 +8,7 @@ mod bad_logs;
 mod balance;
 mod begin;
 mod bus;
+mod c_header;
 mod cart_pole;
 mod cli;
 mod closed_loop;

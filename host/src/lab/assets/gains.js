@@ -53,6 +53,16 @@ const show = (said) => {
     lines.push(["Largest change of an input by rounded gains",
       Math.max(...said.fixed.gain_error).toPrecision(3)]);
   }
+  if (said.margins) {
+    const { common, disk } = said.margins.inputs;
+    const bound = (value, digits, unit) => value === null ? "any" : value.toFixed(digits) + unit;
+    lines.push(["Gain of all inputs that it bears",
+      `${common.gain[0].toFixed(3)} to ${bound(common.gain[1], 3, "")}`]);
+    lines.push(["Delay that it bears", bound(common.delay_s && 1e3 * common.delay_s, 1, " ms")]);
+    const low = said.margins.inputs.low ? ": LOW" : "";
+    lines.push(["All inputs at once, each in its own way", `±${bound(disk.gain_db, 1, " dB")}, ` +
+      `±${(disk.phase_rad * 180 / Math.PI).toFixed(0)} deg${low}`]);
+  }
   if (said.omitted.length) lines.push(["Left out of the design, kept in the response",
     said.omitted.join(", ")]);
   $("figures").replaceChildren(table(["Quantity", "Value"], lines));

@@ -8,10 +8,10 @@ use crate::lab::server::LabState;
 use crate::lab::session::{LabSession, aside, in_degrees};
 use crate::model::Model;
 use crate::output::number::hex;
-use crate::report::verification_text;
+use crate::report::{margins_json, verification_text};
 use crate::study::{left_out, response, verify};
 use crate::synth::export::{self, Provenance};
-use crate::synth::{Design, Request, Time, Weight, rows};
+use crate::synth::{Design, LoopFigures, Request, Time, Weight, rows};
 use axum::Json;
 use axum::extract::{Path, Query, State};
 use serde::Deserialize;
@@ -112,6 +112,7 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
         })
     });
     let poles = design.gains.poles.iter().map(|pole| [pole.re, pole.im]);
+    let figures = LoopFigures::of(model, &design)?;
     let omitted = design.omitted.iter();
     Ok(json!({
         "poles": poles.collect::<Vec<_>>(),
@@ -119,6 +120,7 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
         "states": design.states.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
         "inputs": design.inputs.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
         "fixed": fixed,
+        "margins": margins_json(figures.as_ref())["margins"],
         "omitted": omitted.map(|o| o.effect.info().title).collect::<Vec<_>>(),
         "degrees": (0..model.link_count()).all(|joint| in_degrees(model, joint)),
         "response": {
@@ -174,7 +176,7 @@ pub(super) async fn file(
                 Ok(download("text/plain; charset=utf-8", "gains.rs", text))
             }
             "gains.h" => {
-                let text = export::c_header(&design, fixed, &made);
+                let text = export::c_header(&design, fixed, &made, export::C_NAME);
                 Ok(download("text/plain; charset=utf-8", "gains.h", text))
             }
             "gains.csv" => Ok(download("text/csv", "gains.csv", export::csv(&design))),

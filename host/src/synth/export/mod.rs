@@ -1,6 +1,7 @@
 //! A design written for people, for other programs, and for firmware.
 
 mod c_header;
+mod c_text;
 mod format;
 mod golden;
 mod rust_file;
@@ -8,7 +9,7 @@ mod state_space;
 mod text;
 mod values;
 
-pub use c_header::c_header;
+pub use c_header::{C_NAME, c_header, is_c_name};
 pub use golden::{Golden, golden};
 pub use rust_file::rust_file;
 pub use state_space::{csv, json, matlab};

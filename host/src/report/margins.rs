@@ -1,0 +1,201 @@
+//! Margins and stiffness of a linear loop, in words and as JSON.
+
+use crate::synth::{Design, LoopFigures, LoopMargin, Margins, Signal, Stiffness, rows};
+use serde_json::{Value, json};
+
+/// Less than this is warned of, dB and degrees.
+const LOW: (f64, f64) = (6.0, 30.0);
+
+/// Lasting torque and share of dead zone whose leans are said, N m and 1.
+const TORQUE_NM: f64 = 0.01;
+const DEAD_ZONE: f64 = 0.01;
+
+/// Whether a loop bears less than 6 dB or 30 degrees in all channels at once.
+pub fn is_low(margins: &Margins) -> bool {
+    margins.disk.gain_db() < LOW.0 || margins.disk.phase_rad().to_degrees() < LOW.1
+}
+
+/// Lines for people.
+pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
+    let Some(LoopFigures { margins, stiffness }) = figures else {
+        return "The linear loop is not stable: it has no margins.".to_string();
+    };
+    let mut lines = table("Margins at the inputs", &margins.inputs, &design.inputs);
+    if let (Some(sensors), Some(estimation)) = (&margins.sensors, &design.estimator) {
+        lines.push(String::new());
+        lines.extend(table(
+            "Margins at the sensors",
+            sensors,
+            &estimation.outputs,
+        ));
+    }
+    if let Some(supply) = &margins.supply {
+        let above = match supply.highest_v.is_finite() {
+            true => format!("to {:.2} V", supply.highest_v),
+            false => "V upwards".to_string(),
+        };
+        lines.push(format!(
+            "As supply, about {} V: stable from {:.2} {above}",
+            supply.nominal_v, supply.lowest_v
+        ));
+    }
+    if let Some(stiffness) = stiffness {
+        lines.extend(lean_lines(stiffness, design));
+    }
+    if is_low(&margins.inputs) || margins.sensors.as_ref().is_some_and(is_low) {
+        lines.push(format!(
+            "LOW MARGINS: below {} dB or {} deg in all channels at once; weigh the speeds less or \
+             the inputs more (--q, --r)",
+            LOW.0, LOW.1
+        ));
+    }
+    lines.join("\n")
+}
+
+/// Gain, phase and delay of all alike and of each alone, the disk, the peaks.
+fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
+    let mut lines = vec![format!("{title:<24}gain              phase       delay")];
+    let mut put = |name: &str, of: &LoopMargin| {
+        let above = match of.gain[1].is_finite() {
+            true => format!("{:.3}", of.gain[1]),
+            false => "any".to_string(),
+        };
+        let gain = format!("{:.3} to {above}", of.gain[0]);
+        let or_any = |said: Option<String>| said.unwrap_or_else(|| "any".to_string());
+        let phase = or_any(
+            of.phase_rad
+                .map(|rad| format!("{:.1} deg", rad.to_degrees())),
+        );
+        let delay = or_any(of.delay_s.map(|s| format!("{:.1} ms", 1e3 * s)));
+        lines.push(format!("  {name:<22}{gain:<18}{phase:<12}{delay}"));
+    };
+    put("all alike", &margins.common);
+    if channels.len() > 1 {
+        for (channel, single) in channels.iter().zip(&margins.single) {
+            put(&format!("{} alone", channel.name), single);
+        }
+    }
+    let disk = &margins.disk;
+    lines.push(format!(
+        "  {:<22}{:<18}{:<12}disk margin {:.3} at {:.3} rad/s",
+        "each in its own way",
+        match disk.gain().is_finite() {
+            true => format!("±{:.1} dB", disk.gain_db()),
+            false => "any".to_string(),
+        },
+        format!("±{:.1} deg", disk.phase_rad().to_degrees()),
+        disk.alpha,
+        disk.frequency_rad_s,
+    ));
+    lines.push(format!(
+        "  Peaks: |S| {:.2} at {:.3} rad/s, |T| {:.2} at {:.3} rad/s",
+        margins.sensitivity.value,
+        margins.sensitivity.frequency_rad_s,
+        margins.complementary.value,
+        margins.complementary.frequency_rad_s,
+    ));
+    lines
+}
+
+fn lean_lines(stiffness: &Stiffness, design: &Design) -> Vec<String> {
+    let joints = stiffness.lean_per_torque.nrows();
+    let said = |lean: Vec<f64>| {
+        let each = lean.iter().zip(&design.states[..joints]);
+        let each = each.map(|(lean, state)| match state.unit {
+            "rad" => format!("{} {:+.2} deg", state.name, lean.to_degrees()),
+            _ => format!("{} {:+.2} mm", state.name, 1e3 * lean),
+        });
+        each.collect::<Vec<String>>().join(", ")
+    };
+    // Where the robot gives most.
+    let torque = &stiffness.lean_per_torque;
+    let softest = (0..joints).max_by(|a, b| {
+        let most = |joint: &usize| torque.column(*joint).amax();
+        most(a).total_cmp(&most(b))
+    });
+    let mut lines = Vec::new();
+    if let Some(joint) = softest {
+        let lean = (0..joints).map(|row| TORQUE_NM * torque[(row, joint)]);
+        let unit = match design.states[joint].unit {
+            "rad" => "N m",
+            _ => "N",
+        };
+        lines.push(format!(
+            "Lean under a lasting {TORQUE_NM} {unit} at joint {}: {}",
+            joint + 1,
+            said(lean.collect())
+        ));
+    }
+    if let Some(lean) = &stiffness.lean_per_dead_zone {
+        let lean = lean.iter().map(|lean| DEAD_ZONE * lean);
+        lines.push(format!(
+            "Lean by each {} % of the inputs' limits that a dead zone takes: {}",
+            100.0 * DEAD_ZONE,
+            said(lean.collect())
+        ));
+    }
+    lines
+}
+
+/// `margins` and `stiffness` as keys of an object; `null` of a loop that is not stable.
+pub fn margins_json(figures: Option<&LoopFigures>) -> Value {
+    let Some(LoopFigures { margins, stiffness }) = figures else {
+        return json!({ "margins": null, "stiffness": null });
+    };
+    // JSON has no infinity: what nothing bounds is null.
+    let supply = margins.supply.map(|supply| {
+        json!({
+            "nominal_v": supply.nominal_v,
+            "lowest_v": supply.lowest_v,
+            "highest_v": supply.highest_v,
+        })
+    });
+    let stiffness = stiffness.as_ref().map(|stiffness| {
+        let zone = stiffness.lean_per_dead_zone.as_ref();
+        json!({
+            "lean_per_torque": rows(&stiffness.lean_per_torque),
+            "lean_per_dead_zone": zone.map(|lean| lean.iter().copied().collect::<Vec<f64>>()),
+        })
+    });
+    json!({
+        "margins": {
+            "inputs": of_place(&margins.inputs),
+            "sensors": margins.sensors.as_ref().map(of_place),
+            "supply": supply,
+        },
+        "stiffness": stiffness,
+    })
+}
+
+fn of_place(margins: &Margins) -> Value {
+    let of = |margin: &LoopMargin| {
+        json!({
+            "gain": margin.gain,
+            "phase_rad": margin.phase_rad,
+            "delay_s": margin.delay_s,
+        })
+    };
+    let peak = |peak: &crate::synth::Peak| json!({ "peak": peak.value, "frequency_rad_s": peak.frequency_rad_s });
+    json!({
+        "common": of(&margins.common),
+        "single": margins.single.iter().map(of).collect::<Vec<Value>>(),
+        "disk": {
+            "alpha": margins.disk.alpha,
+            "gain": margins.disk.gain(),
+            "gain_db": margins.disk.gain_db(),
+            "phase_rad": margins.disk.phase_rad(),
+            "frequency_rad_s": margins.disk.frequency_rad_s,
+        },
+        "sensitivity": peak(&margins.sensitivity),
+        "complementary": peak(&margins.complementary),
+        "low": is_low(margins),
+    })
+}
+
+/// Adds `margins` and `stiffness` to a design's JSON.
+pub fn with_margins(mut data: Value, figures: Option<&LoopFigures>) -> Value {
+    if let (Value::Object(data), Value::Object(added)) = (&mut data, margins_json(figures)) {
+        data.extend(added);
+    }
+    data
+}
