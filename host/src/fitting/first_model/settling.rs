@@ -90,8 +90,7 @@ impl Settling<'_> {
                 continue;
             }
             let is_told = |index: usize| reach(&found, &intervals, index) <= TOLD;
-            let told =
-                (0..free.len()).map(|index| is_told(index).then(|| intervals[index].clone()));
+            let told = (0..free.len()).map(|index| is_told(index).then(|| intervals[index]));
             let values = free.iter().cloned().zip(told).collect();
             return settled(found.model, values, held);
         }
