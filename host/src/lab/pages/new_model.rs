@@ -64,8 +64,13 @@ pub fn form(session: &LabSession, saved: &SavedSession) -> Markup {
 
 fn guessed(draft: &Draft) -> Markup {
     html! {
-        p.lead { "Filled with what the log tells. Put in what you know of the rig: lengths, masses \
-                  and the motor are guesses." }
+        form #from-log data-send="model-from-log" {
+            p.lead { "Friction, masses or the motor's figures, and the zero can be estimated from the \
+                      log: a fit of some seconds. What you know of the rig comes later, or below." }
+            div.row { button.main { "Estimate a model from the log" } }
+        }
+        p.lead { "Or put in what you know: the form is filled with what the columns tell; lengths, \
+                  masses and the motor are guesses." }
         details {
             summary { "What was guessed, and from what" }
             ul.plain { @for guess in &draft.guesses {

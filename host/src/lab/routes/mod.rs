@@ -44,6 +44,7 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/divide", post(data::divide))
         .route("/s/{number}/model", post(data::model))
         .route("/s/{number}/new-model", post(new_model::make))
+        .route("/s/{number}/model-from-log", post(new_model::make_from_log))
         .route("/s/{number}/columns", post(data::columns))
         .route("/s/{number}/raw", get(data::raw))
         .route("/s/{number}/compare", get(compare::show))

@@ -1,4 +1,5 @@
-//! A model from the form, with the columns of the first log and the friction that was proposed.
+//! A model from the first log alone, or from the form, with the columns of that log and the friction
+//! that was proposed.
 
 use super::shown_model::ShownModel;
 use super::{act_and_go, session};
@@ -48,6 +49,24 @@ pub(super) async fn make(
         };
         let toml = with_friction(toml, &form.friction)?;
         session.begin_model("made from the form", &toml)?;
+        Ok(page_after(session))
+    })
+    .await
+}
+
+/// Makes a model from the first log alone, as `handstand init` does, and goes on to where it is
+/// compared.
+pub(super) async fn make_from_log(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    shown: ShownModel,
+) -> Answer {
+    session(&lab, number)?;
+    act_and_go(lab, number, move |session, saved| {
+        shown.check(saved)?;
+        let draft = session.estimated(saved)?;
+        let draft = draft.ok_or(LabError::NotFound("no log that tells of joints"))?;
+        session.begin_model("estimated from the log", &draft.toml()?)?;
         Ok(page_after(session))
     })
     .await

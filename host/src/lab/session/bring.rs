@@ -3,6 +3,7 @@
 use super::LabSession;
 use super::saved::{SavedSession, SavedStep};
 use crate::error::Result;
+use crate::fitting::estimate;
 use crate::log::init::Draft;
 use crate::log::{LogRequest, RawLog};
 use crate::model::Model;
@@ -54,13 +55,31 @@ impl LabSession {
     /// What the first log that tells anything says of a model, as `handstand init` guesses it;
     /// `drive` is that of the joints, where it is known.
     pub fn draft(&self, saved: &SavedSession, drive: Option<&str>) -> Option<Draft> {
+        self.drafted(saved, drive).map(|(draft, _)| draft)
+    }
+
+    /// The same with its guesses fitted to that log, as `handstand init` writes it; none where no
+    /// log tells anything.
+    ///
+    /// # Errors
+    /// Figures that make no model.
+    pub fn estimated(&self, saved: &SavedSession) -> Result<Option<Draft>> {
+        let Some((mut draft, request)) = self.drafted(saved, None) else {
+            return Ok(None);
+        };
+        estimate(&mut draft, &request)?;
+        Ok(Some(draft))
+    }
+
+    fn drafted(&self, saved: &SavedSession, drive: Option<&str>) -> Option<(Draft, LogRequest)> {
         saved.logs.iter().find_map(|log| {
             let request = LogRequest {
                 path: self.log_path(&log.file),
                 rows: log.rows,
             };
             let raw = RawLog::read_request(&request).ok()?;
-            Draft::of(&raw, &log.file, drive).ok()
+            let draft = Draft::of(&raw, &log.file, drive).ok()?;
+            Some((draft, request))
         })
     }
 

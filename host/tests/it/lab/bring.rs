@@ -125,3 +125,23 @@ fn a_model_from_the_form_takes_the_columns_of_the_log() {
     let toml = server.get("/s/1/download/model.toml").text();
     assert!(toml.contains("column = \"q2_rad\""), "{toml}");
 }
+
+/// What `init` makes of a log in the shell, the lab makes of it by one button.
+#[test]
+fn a_model_is_estimated_from_a_log_as_init_does() {
+    let bench = Bench::new();
+    let server = Server::start_alone(&bench, "");
+    let refused = server.post("/s/1/model-from-log", &json!({}));
+    assert_eq!(refused.status, 404, "{}", refused.text());
+    let log = bench.get("a.csv");
+    let sent = server.post_bytes("/s/1/upload?name=a.csv", "", log.as_bytes());
+    assert_eq!(sent.status, 200, "{}", sent.text());
+    let page = server.get("/s/1/data").text();
+    assert!(page.contains("id=\"from-log\""), "{page}");
+    let made = server.post("/s/1/model-from-log", &json!({}));
+    assert_eq!(made.status, 200, "{}", made.text());
+    assert!(made.text().contains("/s/1/compare"), "{}", made.text());
+    let toml = server.get("/s/1/download/model.toml").text();
+    bench.run("init a.csv -o by_init.toml");
+    assert_eq!(toml, bench.get("by_init.toml"));
+}
