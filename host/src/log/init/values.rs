@@ -76,6 +76,9 @@ pub fn counts_of(values: &[f64]) -> f64 {
 /// Counts per turn of the common encoder with which an angle moves most nearly as far as its goals
 /// do, rad; none where either stands still.
 pub fn counts_beside(angle: &[f64], goal_rad: &[f64]) -> Option<f64> {
+    if stands_still(angle) || stands_still(goal_rad) {
+        return None;
+    }
     let spread = |values: &[f64]| {
         let known = || values.iter().filter(|value| value.is_finite());
         let middle = known().sum::<f64>() / known().count() as f64;
@@ -84,10 +87,9 @@ pub fn counts_beside(angle: &[f64], goal_rad: &[f64]) -> Option<f64> {
     };
     let per_turn = TAU * spread(angle) / spread(goal_rad);
     let away = |counts: &f64| (counts / per_turn).ln().abs();
-    let nearest = COUNTS
+    COUNTS
         .into_iter()
-        .min_by(|a, b| away(a).total_cmp(&away(b)));
-    nearest.filter(|_| per_turn.is_finite() && per_turn > 0.0)
+        .min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 /// Full scales of duties that are counts: timers and registers of servos.
