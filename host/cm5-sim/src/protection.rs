@@ -30,8 +30,11 @@ impl Protection {
 }
 
 impl Servo {
-    /// Update the protection after another `dt_s`.
+    /// Update the protection, and the temperature that it looks at, after another `dt_s`.
     pub(super) fn protect(&mut self, dt_s: f64) {
+        if self.get(TORQUE_ENABLE) != 0 {
+            self.temperature += self.warms_per_s * dt_s;
+        }
         let duty = self.regulator().duty(self.shaft.angle_rad);
         let is_overloaded =
             duty.abs() >= OVERLOAD_DUTY && self.shaft.speed_rad_s.abs() < STALL_RAD_S;

@@ -38,6 +38,8 @@ pub struct Servo {
     pub supply_v: f64,
     /// Temperature, degrees Celsius.
     pub temperature: f64,
+    /// How fast it warms while its torque is on, degrees a second.
+    pub warms_per_s: f64,
     /// Requests ignored while silent after an EEPROM write, or dead.
     pub ignored: u64,
 }
@@ -64,6 +66,7 @@ impl Servo {
             load: 0.0,
             supply_v: 9.6,
             temperature: 30.0,
+            warms_per_s: 0.0,
             ignored: 0,
         };
         servo.reset();

@@ -11,6 +11,9 @@ use handstand_shared::dynamixel::ids;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+/// How fast a servo named by `warms` does: from 30 to the limit of 70 degrees within two seconds.
+const WARMS_PER_S: f64 = 25.0;
+
 /// Which servos there are, how they are set, and their faults. The default is servos 1 to 18 with
 /// factory settings.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +31,7 @@ pub struct BusSpec {
     echo: bool,
     dead: Vec<u8>,
     hot: Vec<u8>,
+    warms: Vec<u8>,
     overload: Vec<u8>,
     jam: Vec<u8>,
     corrupt_request: f64,
@@ -86,6 +90,7 @@ impl Default for BusSpec {
             echo: false,
             dead: Vec::new(),
             hot: Vec::new(),
+            warms: Vec::new(),
             overload: Vec::new(),
             jam: Vec::new(),
             corrupt_request: 0.0,
@@ -115,6 +120,9 @@ impl BusSpec {
             }
             if self.hot.contains(&id) {
                 servo.temperature = 85.0;
+            }
+            if self.warms.contains(&id) {
+                servo.warms_per_s = WARMS_PER_S;
             }
         }
         bus
@@ -175,6 +183,7 @@ impl BusSpec {
             "echo" => self.echo = true,
             "dead" => self.dead = id_list(value)?,
             "hot" => self.hot = id_list(value)?,
+            "warms" => self.warms = id_list(value)?,
             "overload" => self.overload = id_list(value)?,
             "jam" => self.jam = id_list(value)?,
             "supply" => self.supply_v = Some(number(20.0)?),
@@ -247,6 +256,10 @@ impl BusSpec {
         }
         if let Some(model) = model {
             spec.robot.get_or_insert_default().model = model.into();
+        }
+        if spec.x.is_some() && !spec.warms.is_empty() {
+            let expected = "servos of Protocol 1.0: leave model out";
+            return Err(SpecError::value("warms", "", expected));
         }
         match &spec.robot {
             Some(_) if spec.x.is_some() => Err(SpecError::RobotOnX),

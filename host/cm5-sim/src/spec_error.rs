@@ -36,7 +36,7 @@ pub enum SpecError {
 }
 
 const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, corrupt_request, echo, \
-                    dead, hot, overload, jam, supply, model, firmware, mode, turns, turnaround, \
+                    dead, hot, warms, overload, jam, supply, model, firmware, mode, turns, turnaround, \
                     robot, joints, start, lean, lag, gyro, seed";
 
 impl SpecError {

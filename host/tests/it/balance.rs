@@ -119,7 +119,10 @@ fn what_speaks_against_arming_is_said() {
 #[test]
 fn a_safety_stop_names_the_servo() {
     let bench = Bench::new();
-    let ran = bench.run(&line(",hot=5", "--seconds 5"));
+    let refused = bench.run(&line(",hot=5", "--seconds 5"));
+    assert_eq!(refused.code, Some(4), "{refused:?}");
+    assert!(refused.stderr.contains("overheating"), "{refused:?}");
+    let ran = bench.run(&line(",warms=5", "--seconds 8"));
     assert_eq!(ran.code, Some(5), "{ran:?}");
     let data = ran.json();
     assert_eq!(data["ended"], "stopped");
