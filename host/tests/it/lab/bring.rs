@@ -130,7 +130,7 @@ fn a_model_from_the_form_takes_the_columns_of_the_log() {
 #[test]
 fn a_model_is_estimated_from_a_log_as_init_does() {
     let bench = Bench::new();
-    let server = Server::start_alone(&bench, "");
+    let server = Server::start(&bench, "");
     let refused = server.post("/s/1/model-from-log", &json!({}));
     assert_eq!(refused.status, 404, "{}", refused.text());
     let log = bench.get("a.csv");

@@ -60,7 +60,7 @@ pub const LISTED: &[ListedMutant] = &[
     logic(
         "low-supply stop removed",
         "firmware/src/app/soft_stop.rs",
-        "} else if self.low.0 >= LOW_ROUNDS {",
+        "} else if self.low.is_some_and(|low| low.us() >= LOW_SUPPLY_US) {",
         "} else if false {",
     ),
     logic(
