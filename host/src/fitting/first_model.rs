@@ -136,8 +136,12 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
     }
     for (index, link) in model.links.iter().enumerate() {
         let at = |field: LinkField| ParameterPath::Link { index, field };
-        let is_fitted = values.iter().any(|(path, _)| *path == at(LinkField::Com));
-        if !is_fitted && link.com_m != drafted.links[index].com_m {
+        let is_fitted = |field: LinkField| values.iter().any(|(path, _)| *path == at(field));
+        let drafted_kg_m2 = drafted.links[index].inertia_kg_m2;
+        if !is_fitted(LinkField::Inertia) && link.inertia_kg_m2 != drafted_kg_m2 {
+            draft.take(&at(LinkField::Inertia), link.inertia_kg_m2);
+        }
+        if !is_fitted(LinkField::Com) && link.com_m != drafted.links[index].com_m {
             draft.take(&at(LinkField::Com), link.com_m);
             draft.take(&at(LinkField::Mass), link.mass_kg);
             let words = format!("{} kg at {} m", rounded(link.mass_kg), rounded(link.com_m));

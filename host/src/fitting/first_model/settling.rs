@@ -17,6 +17,10 @@ const SHOWN: f64 = 0.9;
 const NEEDED: f64 = 1.05;
 /// Levers that are shortened, in all.
 const LEVERS: usize = 6;
+/// A lever this near, as a share, to the one of the fastest swing is held there by the inertia.
+const AT_SHORTEST: f64 = 0.1;
+/// The inertia is then taken so many times as large.
+const LESS_INERT: f64 = 0.25;
 /// A lever is lengthened to so many times itself.
 const LONGER: f64 = 1.3;
 /// Least inertia about a link's own centre of mass, over that of its mass there about the joint.
@@ -53,6 +57,14 @@ impl Settling<'_> {
                 levers += 1;
                 model = found.model;
                 self.make_room(&mut model.links[link]);
+                continue;
+            }
+            if levers < LEVERS
+                && let Some(link) = too_long(&found.model, &free)
+            {
+                levers += 1;
+                model = found.model;
+                model.links[link].inertia_kg_m2 *= LESS_INERT;
                 continue;
             }
             if levers < LEVERS
@@ -178,6 +190,20 @@ impl Settling<'_> {
             on_bound[*index] || !is_plausible(&free[*index], value, guess)
         })
     }
+}
+
+/// A link whose lever is free and its inertia not, where no lever swings faster: as long as its radius
+/// of gyration.
+fn too_long(model: &Model, free: &[ParameterPath]) -> Option<usize> {
+    let is_free =
+        |index: usize, field: LinkField| free.contains(&ParameterPath::Link { index, field });
+    (0..model.links.len()).find(|&index| {
+        let link = &model.links[index];
+        let shortest_m = (link.inertia_kg_m2 / link.mass_kg).sqrt();
+        is_free(index, LinkField::Com)
+            && !is_free(index, LinkField::Inertia)
+            && (link.com_m / shortest_m - 1.0).abs() < AT_SHORTEST
+    })
 }
 
 /// Lengthens a link's lever at the same pull of gravity and, as far as there is any, the same inertia
