@@ -136,8 +136,8 @@ pub fn torque_off_at_start<B: Board>(board: &mut B) {
     torque_off(board);
 }
 
-/// Torque off, everywhere. Twice, for nobody answers a broadcast, and a servo that was just written
-/// ignores the first.
+/// Torque off, everywhere. Twice, for no servo answers a broadcast, and a servo that was just
+/// written ignores the first.
 pub fn torque_off<B: Board>(board: &mut B) {
     write_all(board, TORQUE_ENABLE, 0);
     pause(board);

@@ -30,8 +30,8 @@ pub const ANSWER_US: u16 = 800;
 pub const BETWEEN_WRITES_US: u16 = 200;
 
 /// Ticks in which the limits that arming names are written, in turn, and read back: 18 servos are
-/// read in nine. Beyond, a servo that could not be read is left out, and one that does not hold them
-/// refused.
+/// read in nine. Beyond, a servo that could not be read is left out, and one that does not hold
+/// them refused.
 pub const ARMING_TICKS: u8 = 30;
 
 /// No servo is asked later than this in a tick, us. 18 servos with the factory's return delay take

@@ -1,8 +1,8 @@
 //! When torque comes on.
 //!
 //! Torque limit and speeds travel in packets that no servo answers, and servos ignore a write that
-//! comes right behind another: they are written a tick apart, again and again until every servo that
-//! will be commanded has been read and holds them. Only then does torque come on.
+//! comes right behind another: they are written a tick apart, again and again until every servo
+//! that will be commanded has been read and holds them. Only then does torque come on.
 
 use super::{App, Goal, Onset, State, Torque};
 use crate::age::Age;

@@ -22,8 +22,8 @@ const WITH_TORQUE: u8 = bus::MOST_READ as u8;
 const _: () =
     assert!(TORQUE_ENABLE.address + WITH_TORQUE == PRESENT_POSITION.address + ALL_CHANNELS);
 
-/// Servos whose registers are read in one tick beside that one's: 12 bytes more of each take 240 us,
-/// so that 18 are read in nine ticks.
+/// Servos whose registers are read in one tick beside that one's: 12 bytes more of each take 240
+/// us, so that 18 are read in nine ticks.
 const MOST_UNREAD: u8 = 2;
 
 /// Bytes from the return delay on that hold both angle limits too: 0 in a servo that turns without

@@ -6,7 +6,8 @@ use handstand_shared::dynamixel::timing::EEPROM_NS;
 use handstand_shared::dynamixel::{BROADCAST, ErrorBits, Request, Status};
 
 impl Servo {
-    /// Execute a request received from `began_ns` to `now_ns`; returns the reply's bytes and its delay, ns.
+    /// Execute a request received from `began_ns` to `now_ns`; returns the reply's bytes and its
+    /// delay, ns.
     pub(super) fn execute(
         &mut self,
         (began_ns, now_ns): (u64, u64),

@@ -222,8 +222,8 @@ impl Gains {
         self.verification.stays_uncontrolled
     }
 
-    /// Gain, phase and delay that the linear loop bears, its disk margin and the peaks of S and T, at
-    /// the inputs: `margins` of `handstand gains --json`; `None` of a loop that is not stable.
+    /// Gain, phase and delay margins of the linear loop, its disk margin and the peaks of S and T,
+    /// at the inputs: `margins` of `handstand gains --json`; `None` of a loop that is not stable.
     #[getter]
     fn margins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &margins_json(self.figures.as_ref())["margins"])

@@ -3,7 +3,9 @@
 use super::show::{or_dash, table_of};
 use super::talk::show;
 use super::{ExitStatus, Talk};
-use handstand::challenge::robot_demo::{DemoStep, RobotDemo, ScoredEffect, run as circle};
+use handstand::challenge::robot_demo::{
+    DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run as circle,
+};
 use handstand::deploy::rehearsal::BalanceAttempt;
 use handstand::diagnose::Verdict;
 use handstand::log::LogRequest;
@@ -33,20 +35,22 @@ pub fn run(seed: u64, output: &Path, talk: &Talk) -> Result<ExitStatus> {
 /// What does the same with a robot of one's own.
 fn commands(demo: &RobotDemo, output: &Path) -> String {
     let dir = output.display();
-    let effects = match demo.added.is_empty() {
-        true => "EFFECT".to_string(),
-        false => demo.added.join(" "),
+    let effects = if demo.added.is_empty() {
+        "EFFECT".to_string()
+    } else {
+        demo.added.join(" ")
     };
     format!(
-        "\nThe plan of learned.toml: handstand deploy {dir}/learned.toml --dry-run (fingerprint \
-         {fingerprint})\n\nThe same with your own robot, nominal.toml being its model; it hangs, \
-         and is upright for the last line:\n\
+        "\nThe plan of learned.toml: handstand deploy {dir}/learned.toml --dry-run \
+         {LIMIT_OPTIONS} (fingerprint {fingerprint})\n\nThe same with your own robot, nominal.toml \
+         being its model; it hangs, and is upright for the last line:\n\
          handstand replay {dir}/goals_a.csv --record a.csv --port PORT   # likewise b to e\n\
          handstand diagnose nominal.toml a.csv b.csv c.csv --holdout d.csv e.csv\n\
          handstand add nominal.toml {effects} --fit a.csv b.csv c.csv --holdout d.csv e.csv -o \
          learned.toml\n\
          handstand deploy learned.toml --dry-run   # what the plan takes, and whether it stands\n\
          handstand balance learned.toml --port PORT\n\
+         The demonstration lets its robot move farther and faster: {LIMIT_OPTIONS}.\n\
          Of the drops b, c and e take the free swing alone, `b.csv:FIRST-LAST`: the rows behind \
          torque_on's fall to 0.",
         fingerprint = demo.learned.fingerprint,

@@ -125,9 +125,10 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
 }
 
 fn c_name(text: &str) -> Result<String, String> {
-    match export::is_c_name(text) {
-        true => Ok(text.to_string()),
-        false => Err("give small letters, digits and _, a letter first".into()),
+    if export::is_c_name(text) {
+        Ok(text.to_string())
+    } else {
+        Err("give small letters, digits and _, a letter first".into())
     }
 }
 

@@ -12,9 +12,9 @@
 //! $ handstand robust handstand.toml
 //! ```
 //!
-//! Exit code 1 when the multi-model gain, or with `--plan` yours, leaves more than 2 % unstable. `--json` prints a list of
-//! `gain`, `unstable`, `median_radius`, `worst_radius`, `largest_error` (at which 2 % are unstable)
-//! and `k`, by rows.
+//! Exit code 1 when the multi-model gain, or with `--plan` yours, leaves more than 2 % unstable.
+//! `--json` prints a list of `gain`, `unstable`, `median_radius`, `worst_radius`, `largest_error`
+//! (at which 2 % are unstable) and `k`, by rows.
 
 mod plan;
 

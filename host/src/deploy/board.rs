@@ -79,8 +79,8 @@ impl Board {
             scale: 16,
         },
         range_rad: 0.8,
-        joint_range_rad: 1.5,
-        joint_speed_rad_s: 12.0,
+        joint_range_rad: 1.2,
+        joint_speed_rad_s: 6.0,
     };
 }
 

@@ -4,7 +4,7 @@
 use super::data::FitData;
 use super::fitted_value::{FittedValue, fitted_values};
 use super::horizon::Horizon;
-use super::refit::{Undetermined, blind, told_apart};
+use super::refit::{Undetermined, told_apart, undetermined_by};
 use super::ways::{best_fit, stated};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
@@ -83,13 +83,7 @@ pub fn drift(
         let found = stated(found, &data);
         match fitted_values(&found, &data) {
             (values, Some(_)) => Ok(values),
-            _ => Err(Undetermined {
-                blind: blind(&found, &data)
-                    .iter()
-                    .map(ToString::to_string)
-                    .collect(),
-                mixed: Vec::new(),
-            }),
+            _ => Err(undetermined_by(&found, &data)),
         }
     });
     let fitted: Vec<Result<Vec<FittedValue>, Undetermined>> = fitted.collect();

@@ -256,13 +256,7 @@ impl Refit<'_> {
             }
         }
         if told.is_none() {
-            return Err(Undetermined {
-                blind: blind(&found, data)
-                    .iter()
-                    .map(ToString::to_string)
-                    .collect(),
-                mixed: Vec::new(),
-            });
+            return Err(undetermined_by(&found, data));
         }
         let fitted = self.error_on_fitted(&found);
         let rms_rad = |model: &Model, data: &FitData| fit_start_states(model, data).rms(data);
@@ -343,8 +337,17 @@ fn said_of_held(path: &ParameterPath, model: &Model) -> String {
     )
 }
 
+/// Why a fit has no intervals: the parameters that change nothing in the data.
+pub(super) fn undetermined_by(found: &Fit, data: &FitData) -> Undetermined {
+    let blind = blind(found, data);
+    Undetermined {
+        blind: blind.iter().map(ToString::to_string).collect(),
+        mixed: Vec::new(),
+    }
+}
+
 /// The free parameters whose change leaves every prediction as it was.
-pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
+fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
     let base = residuals(&found.model, data, &found.nodes);
     let changes_nothing = |path: &&ParameterPath| {
         let value = path.get(&found.model).unwrap_or(0.0);

@@ -122,8 +122,8 @@ impl<L: SerialLink> Session<L> {
     pub fn obey(&mut self, command: &Command, action: &str) -> Result<()> {
         for _ in 0..TRIES {
             let sent = self.send(command)?;
-            // Gains are answered when EEPROM is written: 8.5 ms a byte, a byte a tick. Arming is when
-            // every servo has said that it holds its limits: 200 ms at most.
+            // Gains are answered when EEPROM is written: 8.5 ms a byte, a byte a tick. Arming is
+            // when every servo has said that it holds its limits: 200 ms at most.
             let slow = matches!(
                 command,
                 Command::PlanChunk { .. } | Command::PlanStore { .. } | Command::Arm { .. }

@@ -122,7 +122,8 @@ pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
         ),
         Refusal::ServoMode => (
             "a servo has not said whether it is in wheel mode",
-            "try again; if it stays so, its answers are disturbed: `handstand bus monitor` counts them",
+            "try again; if it stays so, its answers are disturbed: `handstand bus monitor` counts \
+             them",
         ),
         Refusal::ServoError => (
             "a servo reports overload or overheating",
@@ -134,7 +135,8 @@ pub fn refusal_words(refusal: Refusal) -> (&'static str, &'static str) {
         ),
         Refusal::Gyro => (
             "the gyro is not connected, far from the plan's zero, or not at rest",
-            "hold the robot still for 0.1 s; `handstand bus monitor` shows the code, `gains deploy` sets the zero",
+            "hold the robot still for 0.1 s; `handstand bus monitor` shows the code, `gains deploy` \
+             sets the zero",
         ),
         Refusal::Pose => (
             "the robot is too far from the pose its gains are for",

@@ -1,6 +1,6 @@
 //! Margins and stiffness of a linear loop, in words and as JSON.
 
-use crate::synth::{Design, LoopFigures, LoopMargin, Margins, Signal, Stiffness, rows};
+use crate::synth::{Design, LoopFigures, LoopMargin, Margins, Peak, Signal, Stiffness, rows};
 use serde_json::{Value, json};
 
 /// Less than this is warned of, dB and degrees.
@@ -10,7 +10,7 @@ const LOW: (f64, f64) = (6.0, 30.0);
 const TORQUE_NM: f64 = 0.01;
 const DEAD_ZONE: f64 = 0.01;
 
-/// Whether a loop bears less than 6 dB or 30 degrees in all channels at once.
+/// Whether a loop is robust to less than 6 dB or 30 degrees in all channels at once.
 pub fn is_low(margins: &Margins) -> bool {
     margins.disk.gain_db() < LOW.0 || margins.disk.phase_rad().to_degrees() < LOW.1
 }
@@ -30,9 +30,10 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
         ));
     }
     if let Some(supply) = &margins.supply {
-        let above = match supply.highest_v.is_finite() {
-            true => format!("to {:.2} V", supply.highest_v),
-            false => "V upwards".to_string(),
+        let above = if supply.highest_v.is_finite() {
+            format!("to {:.2} V", supply.highest_v)
+        } else {
+            "V upwards".to_string()
         };
         lines.push(format!(
             "As supply, about {} V: stable from {:.2} {above}",
@@ -56,9 +57,10 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
 fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
     let mut lines = vec![format!("{title:<24}gain              phase       delay")];
     let mut put = |name: &str, of: &LoopMargin| {
-        let above = match of.gain[1].is_finite() {
-            true => format!("{:.3}", of.gain[1]),
-            false => "any".to_string(),
+        let above = if of.gain[1].is_finite() {
+            format!("{:.3}", of.gain[1])
+        } else {
+            "any".to_string()
         };
         let gain = format!("{:.3} to {above}", of.gain[0]);
         let or_any = |said: Option<String>| said.unwrap_or_else(|| "any".to_string());
@@ -79,9 +81,10 @@ fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
     lines.push(format!(
         "  {:<22}{:<18}{:<12}disk margin {:.3} at {:.3} rad/s",
         "each in its own way",
-        match disk.gain().is_finite() {
-            true => format!("±{:.1} dB", disk.gain_db()),
-            false => "any".to_string(),
+        if disk.gain().is_finite() {
+            format!("±{:.1} dB", disk.gain_db())
+        } else {
+            "any".to_string()
         },
         format!("±{:.1} deg", disk.phase_rad().to_degrees()),
         disk.alpha,
@@ -175,7 +178,7 @@ fn of_place(margins: &Margins) -> Value {
             "delay_s": margin.delay_s,
         })
     };
-    let peak = |peak: &crate::synth::Peak| json!({ "peak": peak.value, "frequency_rad_s": peak.frequency_rad_s });
+    let peak = |peak: &Peak| json!({ "peak": peak.value, "frequency_rad_s": peak.frequency_rad_s });
     json!({
         "common": of(&margins.common),
         "single": margins.single.iter().map(of).collect::<Vec<Value>>(),

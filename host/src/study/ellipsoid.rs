@@ -108,14 +108,11 @@ pub(super) fn ellipsoid(
     };
     let enough = |count: usize| count as f64 >= STABILISED_SHARE * RUNS as f64;
     let open = enough(stabilised(LARGEST_REGION_RAD)?);
-    let shortest_rad = match open {
-        true => LARGEST_REGION_RAD,
-        false => {
-            bisect(0.0, LARGEST_REGION_RAD, HALVINGS, |shortest_rad| {
-                Ok(enough(stabilised(shortest_rad)?))
-            })?
-            .0
-        }
+    let shortest_rad = if open {
+        LARGEST_REGION_RAD
+    } else {
+        let holds = |shortest_rad| Ok(enough(stabilised(shortest_rad)?));
+        bisect(0.0, LARGEST_REGION_RAD, HALVINGS, holds)?.0
     };
     if shortest_rad == 0.0 {
         return Ok(None);
@@ -139,7 +136,7 @@ mod tests {
     use crate::synth::Request;
     use std::path::Path;
 
-    /// The weak direction is that of an independent computation; across it the robot bears much.
+    /// The weak direction is that of an independent computation; across it the region is wide.
     #[test]
     fn the_paper_s_robot_is_weak_in_one_direction() {
         let text = include_str!("../../models/handstand.toml").to_string()

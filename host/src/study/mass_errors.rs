@@ -22,8 +22,8 @@ pub struct MassErrors<'a> {
 }
 
 impl MassErrors<'_> {
-    /// The plants, each link's mass within `share` of the model's, by itself; their inputs are as late
-    /// as the model's drives.
+    /// The plants, each link's mass within `share` of the model's, by itself; their inputs are as
+    /// late as the model's drives.
     ///
     /// # Errors
     /// Robots that cannot be linearised.

@@ -186,12 +186,13 @@ pub(super) fn stabilised_from(
     };
     let closed = tested.closed_loop(&[])?;
     let near = tested.figures(&closed, &rows(&design.gains.k), NEAR_RAD);
-    let region = match near.stabilised_share >= STABILISED_SHARE {
-        true => tested.region(&[])?,
-        false => Region {
+    let region = if near.stabilised_share >= STABILISED_SHARE {
+        tested.region(&[])?
+    } else {
+        Region {
             spread_rad: 0.0,
             open: false,
-        },
+        }
     };
     Ok((near, region))
 }

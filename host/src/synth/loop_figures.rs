@@ -9,7 +9,7 @@ use crate::model::Model;
 /// Margins and stiffness of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopFigures {
-    /// How much the loop bears.
+    /// Margins of the loop.
     pub margins: DesignMargins,
     /// How far it leans; none with a filter, whose estimate a lasting torque leads astray.
     pub stiffness: Option<Stiffness>,

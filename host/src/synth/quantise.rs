@@ -3,9 +3,9 @@
 //! With k = K (state step) 2^shift / (input step), a row of gains only knows the scale 2^shift /
 //! (input step). It is made as large as gains and sum allow: every gain fits a word, and sum |k|
 //! 2^(bits-1) + |bias| < 2^(2 bits-1), so that no states whatever overflow the sum. The shift is
-//! then the least that lets the input reach its range, for each place more makes a step of the input
-//! twice as coarse. Whole bytes would save an 8-bit machine next to nothing (docs/measured/bench-firmware.md)
-//! and cost up to seven places.
+//! then the least that lets the input reach its range, for each place more makes a step of the
+//! input twice as coarse. Whole bytes would save an 8-bit machine next to nothing
+//! (docs/measured/bench-firmware.md) and cost up to seven places.
 
 use super::error::DesignError;
 use super::fixed_law::FixedLaw;

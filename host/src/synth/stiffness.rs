@@ -19,8 +19,8 @@ pub struct Stiffness {
     /// Departure of each joint (rows) per torque at each joint (columns), rad/N m; of slides m, N.
     pub lean_per_torque: DMatrix<f64>,
     /// Departure of each joint per dead zone that starts at zero and is as wide as the whole limit
-    /// of its input, for the signs of the inputs that bring the largest lean and keep themselves up;
-    /// none if no signs do, of more than ten inputs, or in continuous time.
+    /// of its input, for the signs of the inputs that bring the largest lean and keep themselves
+    /// up; none if no signs do, of more than ten inputs, or in continuous time.
     pub lean_per_dead_zone: Option<DVector<f64>>,
 }
 

@@ -8,7 +8,8 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     let bench = Bench::new();
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
     let ran = bench.run(&format!(
-        "gains deploy {model} --law state --unstable --port sim-cm5 --states 20000 --rust gains.rs --header plan.rs --tap bytes.txt --json"
+        "gains deploy {model} --law state --unstable --port sim-cm5 --states 20000 \
+         --rust gains.rs --header plan.rs --tap bytes.txt --json"
     ));
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let data = ran.json();

@@ -31,12 +31,13 @@ fn robot(effects: &[(&str, &str, &str)]) -> String {
     CLEAN.replace("# effects", &text)
 }
 
-/// How many of these starts `balance` stands from for 10 s, told nothing but the model.
-fn stood(bench: &Bench, leans: &[&str]) -> usize {
+/// How many of these starts `balance` stands from for 10 s, told nothing but the model and
+/// `options`.
+fn stood(bench: &Bench, leans: &[&str], options: &str) -> usize {
     let stands = |lean: &&&str| {
         let port = format!("--port sim-cm5:robot=m.toml,start=held,lean={lean}");
         let ran = bench.run(&format!(
-            "balance m.toml {port} --yes --seconds 10 --countdown 0"
+            "balance m.toml {port} --yes --seconds 10 --countdown 0 {options}"
         ));
         assert!([Some(0), Some(5)].contains(&ran.code), "{ran:?}");
         ran.code == Some(0)
@@ -60,15 +61,26 @@ fn a_robot_with_one_effect_of_its_drives_stands_by_the_plan_of_its_model() {
         ("dead_zone", "\"all\"", "width = 0.1\npunch = -0.1"),
         ("coulomb", "2", "torque_nm = 0.2"),
         ("torque_saturation", "\"all\"", "limit_nm = 1.0"),
-        ("backlash", "2", "gap_rad = 0.03"),
         ("sensor_lag", "2", "time_constant_s = 0.02"),
         ("torque_scale", "\"all\"", "factor = 0.7"),
     ] {
         bench.put("m.toml", robot(&[effect]));
-        let count = stood(&bench, &LEANS);
+        let count = stood(&bench, &LEANS, "");
         assert!(count >= 9, "{effect:?}: {count} of 10");
         let ran = deploy(&bench, "");
         assert_eq!(ran.code, Some(0), "{effect:?}: {ran:?}");
+    }
+}
+
+/// Behind play the joints swing faster than a robot's limits allow: that is said beforehand, and
+/// holds for limits that are asked for.
+#[test]
+fn a_robot_that_swings_too_fast_is_let_down_as_deploy_says() {
+    let bench = Bench::new();
+    bench.put("m.toml", robot(&[("backlash", "2", "gap_rad = 0.03")]));
+    for (options, code, stands) in [("", 1, 0), ("--joint-speed 12 --joint-range 1.5", 0, 3)] {
+        assert_eq!(deploy(&bench, options).code, Some(code), "{options}");
+        assert_eq!(stood(&bench, &LEANS[..3], options), stands, "{options}");
     }
 }
 
@@ -101,7 +113,7 @@ fn deploy_says_what_balance_then_does() {
         let data = ran.json();
         assert_eq!(data["verdict"]["holds"], holds, "{effects:?}");
         assert_eq!(data["verdict"]["attempts"].as_array().unwrap().len(), 10);
-        let count = stood(&bench, &LEANS[..3]);
+        let count = stood(&bench, &LEANS[..3], "");
         assert_eq!(count == 3, holds, "{effects:?}: {count} of 3");
         assert!(holds || count == 0, "{effects:?}: {count} of 3");
     }

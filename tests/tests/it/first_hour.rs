@@ -11,8 +11,8 @@ fn walked(seed: u64) -> (Hidden, End) {
 }
 
 /// A spring that mass and inertia, both guessed, nearly take the place of; a dead zone whose width
-/// does not show beside its punch; a delay whose drive's figures are guessed; friction behind goals,
-/// read in counts that nobody names; a short pendulum that the air brakes.
+/// does not show beside its punch; a delay whose drive's figures are guessed; friction behind
+/// goals, read in counts whose number a turn is not named; a short pendulum that the air brakes.
 #[test]
 fn first_models_lead_to_what_is_hidden() {
     for (seed, in_first_model) in [(6, false), (7, false), (12, false), (18, true), (25, false)] {

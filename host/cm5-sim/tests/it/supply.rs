@@ -79,7 +79,7 @@ fn an_adapter_forgets_the_supply() {
         outcome
     };
     arm_after(Mode::Stream);
-    // The supply is known; modes are asked anew.
+    // The supply is known; modes are asked again.
     let known = Some(Err(Refusal::ServoMode));
     assert_eq!(arm_after(Mode::Balance), known);
     assert_eq!(arm_after(Mode::Bridge), Some(Err(Refusal::Supply)));

@@ -2,9 +2,9 @@
 //! believes, measure, diagnose, balance with what was learned.
 //!
 //! `hidden` (what is drawn by seed, and sealed) -> [`crate::deploy::rehearsal`] (a plan balances
-//! the robot) -> `recording` (excitation, played through the firmware, the robot hanging) -> `learning`
-//! (diagnose, add) -> [`crate::deploy::PlanBasis`] (a plan for what was learned) -> `page` (both
-//! attempts side by side).
+//! the robot) -> `recording` (excitation, played through the firmware, the robot hanging) ->
+//! `learning` (diagnose, add) -> [`crate::deploy::PlanBasis`] (a plan for what was learned) ->
+//! `page` (both attempts side by side).
 //!
 //! The robot is a model of this crate on simulated servos, the firmware its own logic in process;
 //! nothing of the true state reaches the diagnosis, and only the first link's attitude the law.
@@ -19,4 +19,4 @@ pub use hidden::{HiddenRobot, RobotAnswer, RobotEffect};
 pub use learning::Learned;
 pub use page::html;
 pub use recording::{MOTIONS, RecordedMotion};
-pub use run::{DemoStep, RobotDemo, ScoredEffect, run};
+pub use run::{DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run};

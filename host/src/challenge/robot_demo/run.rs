@@ -118,10 +118,21 @@ pub fn run(seed: u64, dir: &Path, hear: &(dyn Fn(DemoStep) + Sync)) -> Result<Ro
     Ok(demo)
 }
 
+/// Safety limits of the demonstration, wider than those of a robot that can break: on its way back
+/// it moves far and fast.
+const LIMITS: Board = Board {
+    joint_range_rad: 1.5,
+    joint_speed_rad_s: 12.0,
+    ..Board::BIOLOID
+};
+
+/// The same for the command line.
+pub const LIMIT_OPTIONS: &str = "--fallen 0.8 --joint-range 1.5 --joint-speed 12";
+
 /// Balances the robot with the plan that `handstand deploy` makes of this model.
 fn attempt(robot: &HiddenRobot, model: &Model) -> Result<BalanceAttempt> {
-    let (board, timing) = (Board::BIOLOID, BoardTiming::HOST_ATTITUDE);
-    let plan = PlanBasis::of(model, &board, &timing, &ToldDrives::default())?.plan(model)?;
+    let timing = BoardTiming::HOST_ATTITUDE;
+    let plan = PlanBasis::of(model, &LIMITS, &timing, &ToldDrives::default())?.plan(model)?;
     let setting = Setting {
         start_deg: robot.start_deg,
         ..Setting::default()

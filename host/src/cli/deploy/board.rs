@@ -8,6 +8,9 @@ use handstand_shared::message::Attitude;
 use handstand_shared::plan::Gyro;
 use handstand_shared::raw::Position;
 
+/// Departure of the first link at which a robot counts as fallen, rad.
+const FALLEN_RAD: f64 = 0.5;
+
 /// Servos, limits and sensors of the robot.
 #[derive(Debug, Clone, clap::Args)]
 pub struct BoardArgs {
@@ -45,7 +48,7 @@ pub struct BoardArgs {
     #[arg(long, default_value_t = 0.0)]
     servo_lag: f64,
     /// Departure of the first link at which it counts as fallen, rad
-    #[arg(long, default_value_t = Board::BIOLOID.range_rad)]
+    #[arg(long, default_value_t = FALLEN_RAD)]
     fallen: f64,
     /// Departure of a driven joint from straight at which torque goes off, rad
     #[arg(long, default_value_t = Board::BIOLOID.joint_range_rad)]

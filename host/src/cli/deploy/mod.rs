@@ -7,18 +7,18 @@
 //! options, on positions and their differences.
 //!
 //! What the model says of its drives goes into the plan: delay and encoder lag into the observer,
-//! dead zone and dry friction into what is jumped over, limits, the supply; options go before it. What
-//! no plan has a place for is listed. Whether the plan holds the robot is tried out: ten starts within
-//! 1 deg, on the firmware's own logic, the model with all of its effects behind simulated servos.
-//! With `--dry-run` the exit code is 1 where fewer than nine stand for 10 s. A law on plain states
-//! whose loop is unstable with the board's own speeds is refused.
+//! dead zone and dry friction into what is jumped over, limits, the supply; options go before it.
+//! What no plan has a place for is listed. Whether the plan holds the robot is tried out: ten
+//! starts within 1 deg, on the firmware's own logic, the model with all of its effects behind
+//! simulated servos. With `--dry-run` the exit code is 1 where fewer than nine stand for 10 s. A
+//! law on plain states whose loop is unstable with the board's own speeds is refused.
 //!
-//! Step by step: designs; tries the plan out; writes the whole plan (`--header`), and of a law on plain states the
-//! table (`--rust`, `--c`), as source files; uploads the plan, which the CM-5 keeps in EEPROM
-//! beside the one before, or with `--flash` builds the firmware with the plan compiled in and
-//! writes that through the boot loader; reads it back; compares bytes and fingerprint; and runs the
-//! CM-5's law, on the tables read back, over random states against wide integers: not a bit may
-//! differ.
+//! Step by step: designs; tries the plan out; writes the whole plan (`--header`), and of a law on
+//! plain states the table (`--rust`, `--c`), as source files; uploads the plan, which the CM-5
+//! keeps in EEPROM beside the one before, or with `--flash` builds the firmware with the plan
+//! compiled in and writes that through the boot loader; reads it back; compares bytes and
+//! fingerprint; and runs the CM-5's law, on the tables read back, over random states against wide
+//! integers: not a bit may differ.
 //!
 //! The plan is more than its tables: which servos are in shoulder and hip (`--joints`), torque at
 //! full output, dead zone, slew, where the first link's rate comes from (the PC, or with
@@ -33,8 +33,8 @@
 //! Torque stays off. `--json` prints `law`, `steps`, `way` (`upload`, `flash`, null),
 //! `fingerprint`, `bytes`, `uploaded`, `states_replayed`, `limits` (of each unstable mode
 //! `pole_per_s`, `answer_s`, `growth`, `degree_share`, `half_step_share`; empty with `--law
-//! state`), `effects` (`effect`, `place`, `how`: what the plan takes of the model, and what it cannot),
-//! `radius` (of a law on plain states), `verdict` (`stood`, `holds`, `attempts`).
+//! state`), `effects` (`effect`, `place`, `how`: what the plan takes of the model, and what it
+//! cannot), `radius` (of a law on plain states), `verdict` (`stood`, `holds`, `attempts`).
 
 pub mod board;
 mod build;
@@ -261,9 +261,10 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         None => talk.say("nothing was sent"),
         Some(_) => talk.say("the CM-5 has these gains; torque is off"),
     }
-    Ok(match args.dry_run {
-        true => ExitStatus::answer(verdict::holds(verdict.as_ref())),
-        false => ExitStatus::Done,
+    Ok(if args.dry_run {
+        ExitStatus::answer(verdict::holds(verdict.as_ref()))
+    } else {
+        ExitStatus::Done
     })
 }
 

@@ -58,8 +58,8 @@ pub(super) struct Taken<'a> {
     pub taken_s: [f64; INPUTS],
     /// What the observer takes of each joint's sensor lag, s.
     pub aged_s: [f64; INPUTS],
-    /// Whether the observer has a state for it; else, short or beside a lag of the torques, it is an
-    /// age.
+    /// Whether the observer has a state for it; else, short or beside a lag of the torques, it is
+    /// an age.
     pub own_state: [bool; INPUTS],
 }
 
@@ -149,35 +149,35 @@ fn late(taken: &Taken, place: usize) -> String {
 }
 
 fn aged(all_s: f64, taken: &Taken, place: usize) -> String {
-    let how = match taken.own_state[place] {
-        true => "a filter's state",
-        false => "as the age of a reading",
+    let how = if taken.own_state[place] {
+        "a filter's state"
+    } else {
+        "as the age of a reading"
     };
     part(all_s, taken.aged_s[place], how)
 }
 
 fn part(all_s: f64, taken_s: f64, how: &str) -> String {
     let [all_ms, taken_ms] = [all_s, taken_s].map(|s| 1e3 * s);
-    match all_s - taken_s > 1e-6 {
-        false => format!("{all_ms:.1} ms, {how}"),
-        true => format!(
+    if all_s - taken_s > 1e-6 {
+        format!(
             "{taken_ms:.1} of {all_ms:.1} ms, {how}; the rest is later than the inputs that the \
              CM-5 keeps"
-        ),
+        )
+    } else {
+        format!("{all_ms:.1} ms, {how}")
     }
 }
 
 fn jumped(board: &Board, place: usize, is_told: bool) -> String {
     let lost = 100.0 * board.dead_zone[place];
-    let told = match is_told {
-        true => " as told",
-        false => "",
-    };
-    match board.least_nm[place] > 0.0 {
-        false => format!("{lost:.1} % of full output jumped over{told}"),
-        true => format!(
+    let told = if is_told { " as told" } else { "" };
+    if board.least_nm[place] > 0.0 {
+        format!(
             "{lost:.1} % of full output jumped over; torques below {:.3} N m wait",
             board.least_nm[place] / 2.0
-        ),
+        )
+    } else {
+        format!("{lost:.1} % of full output jumped over{told}")
     }
 }

@@ -9,8 +9,8 @@ const LAST_S: f64 = 5.0;
 const REST_RAD: f64 = 0.0103;
 /// Mean departure of a joint from which a robot at rest leans, rad: 1 deg.
 const LEAN_RAD: f64 = 0.017_453_292_519_943_295;
-/// A joint whose reading stays within a code for so long, s, keeps still: one that swings does so at
-/// either end, for less than half of the time.
+/// A joint whose reading stays within a code for so long, s, keeps still: one that swings does so
+/// at either end, for less than half of the time.
 const STICKS_S: f64 = 0.15;
 /// Share of the time that the liveliest joint keeps still where the robot hunts.
 const STILL_SHARE: f64 = 0.5;

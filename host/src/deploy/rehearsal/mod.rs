@@ -136,9 +136,10 @@ impl Rehearsal {
                 attempt.stood_s, attempt.end
             )
         });
-        let verdict = match self.holds {
-            true => "holds this robot",
-            false => "does NOT hold this robot",
+        let verdict = if self.holds {
+            "holds this robot"
+        } else {
+            "does NOT hold this robot"
         };
         format!("the {law} law {verdict}: {stood}{how}{fell}")
     }

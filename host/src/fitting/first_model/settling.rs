@@ -1,5 +1,5 @@
-//! A first model's values settled: what its log determines told from what it does not, with room for
-//! the links' inertia.
+//! A first model's values settled: what its log determines told from what it does not, with room
+//! for the links' inertia.
 
 use super::values::is_friction;
 use super::{ON, fit};
@@ -12,8 +12,8 @@ use crate::model::{Link, LinkField, Model, ParameterPath};
 const TOLD: f64 = 3.0;
 /// Friction is shown where its interval reaches less than so many times its size, and not to zero.
 const SHOWN: f64 = 0.9;
-/// Friction without which the error is so many times as large is there, whatever its interval: beside
-/// what the model lacks intervals are wide.
+/// Friction without which the error is so many times as large is there, whatever its interval:
+/// beside what the model lacks intervals are wide.
 const NEEDED: f64 = 1.05;
 /// Levers that are shortened, in all.
 const LEVERS: usize = 6;
@@ -43,9 +43,9 @@ pub(super) struct Settling<'a> {
 }
 
 impl Settling<'_> {
-    /// The model fitted from where it began. Friction stays where the log shows some. A drive's or a
-    /// link's value that the log hardly determines stays free for all that: it is a guess, and held
-    /// wrong it bends whatever is looked for beside it.
+    /// The model fitted from where it began. Friction stays where the log shows some. A drive's or
+    /// a link's value that the log hardly determines stays free for all that: it is a guess, and
+    /// held wrong it bends whatever is looked for beside it.
     pub fn settle(&self, begun: &Model, mut free: Vec<ParameterPath>) -> Settled {
         let mut model = begun.clone();
         let (mut levers, mut held) = (0, Vec::new());
@@ -95,7 +95,8 @@ impl Settling<'_> {
                 forget(&mut model, &path, self.drafted);
                 if let ParameterPath::Link { index, .. } = path {
                     model.links[index].com_m = self.drafted.links[index].com_m;
-                    // Its guesses go together, and no more room is made for what they do not follow.
+                    // Its guesses go together, and no more room is made for what they do not
+                    // follow.
                     levers = LEVERS;
                 }
                 held.push(path);
@@ -164,11 +165,14 @@ impl Settling<'_> {
             .filter(|index| matches!(free[*index], ParameterPath::Effect { .. }))
             .filter(|index| on_bound[*index] || reach(found, intervals, *index) > SHOWN);
         let mut untold: Vec<usize> = friction.collect();
-        let certainty = |index: &usize| match on_bound[*index] {
-            true => f64::INFINITY,
-            false => reach(found, intervals, *index),
+        let uncertainty = |index: &usize| {
+            if on_bound[*index] {
+                f64::INFINITY
+            } else {
+                reach(found, intervals, *index)
+            }
         };
-        untold.sort_by(|a, b| certainty(b).total_cmp(&certainty(a)));
+        untold.sort_by(|a, b| uncertainty(b).total_cmp(&uncertainty(a)));
         untold.into_iter().find_map(|index| {
             let mut without = found.model.clone();
             forget(&mut without, &free[index], self.drafted);
@@ -192,8 +196,8 @@ impl Settling<'_> {
     }
 }
 
-/// A link whose lever is free and its inertia not, where no lever swings faster: as long as its radius
-/// of gyration.
+/// A link whose lever is free and its inertia not, where no lever swings faster: as long as its
+/// radius of gyration.
 fn too_long(model: &Model, free: &[ParameterPath]) -> Option<usize> {
     let is_free =
         |index: usize, field: LinkField| free.contains(&ParameterPath::Link { index, field });
@@ -206,8 +210,8 @@ fn too_long(model: &Model, free: &[ParameterPath]) -> Option<usize> {
     })
 }
 
-/// Lengthens a link's lever at the same pull of gravity and, as far as there is any, the same inertia
-/// about its joint.
+/// Lengthens a link's lever at the same pull of gravity and, as far as there is any, the same
+/// inertia about its joint.
 fn lighten(link: &mut Link) {
     let pull_kg_m = link.mass_kg * link.com_m;
     let about_joint_kg_m2 = link.inertia_kg_m2 + pull_kg_m * link.com_m;
@@ -234,8 +238,8 @@ fn reach(found: &Fit, intervals: &[Interval], index: usize) -> f64 {
     0.5 * (interval.high - interval.low) / size.max(1e-12)
 }
 
-/// Whether an estimate is one that a bench has: a mass of 60 kg on a servo tells of a motion that the
-/// model does not follow.
+/// Whether an estimate is one that a bench has: a mass of 60 kg on a servo tells of a motion that
+/// the model does not follow.
 fn is_plausible(path: &ParameterPath, value: f64, guess: f64) -> bool {
     match path {
         ParameterPath::Effect { .. } => true,

@@ -56,9 +56,9 @@ const show = (said) => {
   if (said.margins) {
     const { common, disk } = said.margins.inputs;
     const bound = (value, digits, unit) => value === null ? "any" : value.toFixed(digits) + unit;
-    lines.push(["Gain of all inputs that it bears",
+    lines.push(["Gain margin of all inputs",
       `${common.gain[0].toFixed(3)} to ${bound(common.gain[1], 3, "")}`]);
-    lines.push(["Delay that it bears", bound(common.delay_s && 1e3 * common.delay_s, 1, " ms")]);
+    lines.push(["Delay margin", bound(common.delay_s && 1e3 * common.delay_s, 1, " ms")]);
     const low = said.margins.inputs.low ? ": LOW" : "";
     lines.push(["All inputs at once, each in its own way", `±${bound(disk.gain_db, 1, " dB")}, ` +
       `±${(disk.phase_rad * 180 / Math.PI).toFixed(0)} deg${low}`]);

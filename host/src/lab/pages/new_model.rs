@@ -65,8 +65,8 @@ pub fn form(session: &LabSession, saved: &SavedSession) -> Markup {
 fn guessed(draft: &Draft) -> Markup {
     html! {
         form #from-log data-send="model-from-log" {
-            p.lead { "Friction, masses or the motor's figures, and the zero can be estimated from the \
-                      log: a fit of some seconds. What you know of the rig comes later, or below." }
+            p.lead { "Friction, masses or the motor's figures, and the zero can be estimated from \
+                      the log: a fit of some seconds. What you know of the rig comes later, or below." }
             div.row { button.main { "Estimate a model from the log" } }
         }
         p.lead { "Or put in what you know: the form is filled with what the columns tell; lengths, \

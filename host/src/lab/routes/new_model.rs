@@ -1,5 +1,5 @@
-//! A model from the first log alone, or from the form, with the columns of that log and the friction
-//! that was proposed.
+//! A model from the first log alone, or from the form, with the columns of that log and the
+//! friction that was proposed.
 
 use super::shown_model::ShownModel;
 use super::{act_and_go, session};

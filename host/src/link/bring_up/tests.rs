@@ -67,7 +67,7 @@ fn a_sound_robot_passes_all_that_the_line_can_check() {
     assert_eq!(page.matches("| passed |").count(), STEPS.len(), "{page}");
 }
 
-/// Whether it failed or nobody checked it: what would stop the robot is not known to work.
+/// Whether it failed or was not checked: what would stop the robot is not known to work.
 #[test]
 fn no_torque_before_every_earlier_step_passed() {
     let sound = "ids=1-18,delay=0";

@@ -2,13 +2,14 @@
 
 use super::Guess;
 use super::coding::{self, sign_bit};
+use super::counts::{counts_beside, counts_of};
 use super::dataset::{self, give_lerobot_roles, is_lerobot};
 use super::inputs::give_inputs;
 use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
 use super::name::{NameGuess, Role, is_joint_state, name_guess};
 use super::segment::stepping_segment;
 use super::unused::{say_file, say_unused};
-use super::values::{angle_unit, counts_beside, counts_of, duty_unit, median, range, speed_fit};
+use super::values::{angle_unit, duty_unit, median, range, speed_fit};
 use crate::error::{Error, Place, Result};
 use crate::log::{LogReason, RawLog};
 use crate::model::Unit;

@@ -4,6 +4,7 @@
 mod bench;
 mod coding;
 mod columns;
+mod counts;
 mod dataset;
 mod estimated;
 mod evidence;

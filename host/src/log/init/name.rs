@@ -1,6 +1,6 @@
 //! Words of a column's name: the quantity, the unit and the joint they say.
 
-use super::values::counts;
+use super::counts::counts;
 use super::words::{
     AXES, DERIVED, DUTY, EFFORT, GOAL, MEASURED, ON, OTHER, PLAIN, POSITION, SEGMENT, SUPPLY, TIME,
     TORQUE, UNIT_WORDS, VELOCITY,

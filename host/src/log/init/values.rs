@@ -1,11 +1,10 @@
 //! What a column's values say of it: unit, sign, and where the angles rest.
 
+use super::counts::counts;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Beyond two turns either way no joint of a chain swings in rad, but it does in degrees.
 const MOST_RAD: f64 = 2.0 * TAU;
-/// Counts per turn of common encoders.
-const COUNTS: [f64; 4] = [1024.0, 4096.0, 16384.0, 65536.0];
 
 /// Lowest and highest finite value; none where there is no such value.
 pub fn range(values: &[f64]) -> Option<(f64, f64)> {
@@ -54,42 +53,6 @@ pub fn angle_unit(values: &[f64]) -> (&'static str, Option<f64>) {
         () if whole && high - low > 0.0 && low >= 0.0 => ("ticks", Some(counts(high))),
         () => ("deg", None),
     }
-}
-
-/// Counts per turn of the least encoder that reaches so far.
-pub fn counts(highest: f64) -> f64 {
-    let reach = COUNTS.into_iter().find(|counts| highest < *counts);
-    reach.unwrap_or(COUNTS[COUNTS.len() - 1])
-}
-
-/// Counts per turn of an angle whose name says that it counts: of counts below zero, which leave
-/// the first turn, the range says nothing, and most servos that write such have 4096.
-pub fn counts_of(values: &[f64]) -> f64 {
-    let (low, high) = range(values).unwrap_or((0.0, 0.0));
-    if low < 0.0 {
-        counts(high.max(-low)).max(4096.0)
-    } else {
-        counts(high)
-    }
-}
-
-/// Counts per turn of the common encoder with which an angle moves most nearly as far as its goals
-/// do, rad; none where either stands still.
-pub fn counts_beside(angle: &[f64], goal_rad: &[f64]) -> Option<f64> {
-    if stands_still(angle) || stands_still(goal_rad) {
-        return None;
-    }
-    let spread = |values: &[f64]| {
-        let known = || values.iter().filter(|value| value.is_finite());
-        let middle = known().sum::<f64>() / known().count() as f64;
-        let squares: f64 = known().map(|value| (value - middle).powi(2)).sum();
-        (squares / known().count() as f64).sqrt()
-    };
-    let per_turn = TAU * spread(angle) / spread(goal_rad);
-    let away = |counts: &f64| (counts / per_turn).ln().abs();
-    COUNTS
-        .into_iter()
-        .min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 /// Full scales of duties that are counts: timers and registers of servos.
@@ -361,26 +324,6 @@ mod tests {
         }
         let noise: Vec<f64> = (0..400).map(|k| f64::from(k * 7919 % 101) - 50.0).collect();
         assert_eq!(gravity_of_torques(&time_s, &[angle], &noise), None);
-    }
-
-    #[test]
-    fn goals_tell_the_counts_of_a_turn_and_counts_below_zero_no_first_turn() {
-        let goal_rad: Vec<f64> = (0..400)
-            .map(|k| 0.9 * (0.05 * f64::from(k)).sin())
-            .collect();
-        // A servo follows by nine tenths, around its middle.
-        let counts = |per_turn: f64| -> Vec<f64> {
-            let angle = goal_rad.iter().map(|goal| 0.9 * goal * per_turn / TAU);
-            angle.map(|counts| (counts + 30.0).round()).collect()
-        };
-        for per_turn in [1024.0, 4096.0, 16384.0] {
-            assert_eq!(counts_beside(&counts(per_turn), &goal_rad), Some(per_turn));
-        }
-        assert_eq!(counts_beside(&counts(4096.0), &[0.3; 400]), None);
-        assert_eq!(counts_beside(&[7.0; 400], &goal_rad), None);
-        assert_eq!(counts_of(&[12.0, 900.0]), 1024.0);
-        assert_eq!(counts_of(&[-300.0, 500.0]), 4096.0);
-        assert_eq!(counts_of(&[-300.0, 9000.0]), 16384.0);
     }
 
     #[test]

@@ -13,8 +13,8 @@ pub struct BoardTiming {
     pub drive_delay_s: [f64; INPUTS],
     /// Time constant with which a servo's torque follows its input, s; 0: at once.
     pub lag_s: f64,
-    /// Time constant of the filter that the encoder of each driven joint is read through, s; 0: none.
-    /// Only where torques follow at once: else the states it takes are the torques'.
+    /// Time constant of the filter that the encoder of each driven joint is read through, s; 0:
+    /// none. Only where torques follow at once: else the states it takes are the torques'.
     pub sensor_lag_s: [f64; INPUTS],
     /// Age of each reading at the law's moment, s: the angles, then the first link's rate.
     pub age_s: [f64; READINGS],

@@ -103,8 +103,8 @@ impl OnBoard {
     }
 }
 
-/// What the board's drives do and its readings tell, sampled: the state is [angles, speeds, torques,
-/// past inputs], the outputs are the readings, each of its own age.
+/// What the board's drives do and its readings tell, sampled: the state is [angles, speeds,
+/// torques, past inputs], the outputs are the readings, each of its own age.
 ///
 /// # Errors
 /// Robots of other than three joints, two of them driven; effects or readings later than three

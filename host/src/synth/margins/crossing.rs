@@ -9,7 +9,8 @@ use std::f64::consts::{PI, TAU};
 /// Halvings of an interval: to the last digit.
 const HALVINGS: usize = 60;
 
-/// First step of the gain's logarithm from 1, how much longer the next ones are, and the last place.
+/// First step of the gain's logarithm from 1, how much longer the next ones are, and the last
+/// place.
 const GAIN_STEPS: (f64, f64, f64) = (0.002, 1.04, 12.0);
 
 /// Of all channels together.

@@ -27,9 +27,10 @@ pub struct DiskMargin {
 impl DiskMargin {
     /// Factors of the gains within it: 1 / g to g.
     pub fn gain(&self) -> f64 {
-        match self.alpha < 2.0 {
-            true => (2.0 + self.alpha) / (2.0 - self.alpha),
-            false => f64::INFINITY,
+        if self.alpha < 2.0 {
+            (2.0 + self.alpha) / (2.0 - self.alpha)
+        } else {
+            f64::INFINITY
         }
     }
 

@@ -1,4 +1,4 @@
-//! How much a stable loop bears before it is lost: gain, phase, delay, the multiloop disk margin,
+//! How robust a stable loop is: gain, phase, delay, the multiloop disk margin,
 //! and the peaks of its sensitivities.
 //!
 //! L(z) = C (zI - A)^-1 B is the loop broken at the inputs (or at the sensors), with negative
@@ -37,15 +37,15 @@ pub struct OpenLoop {
     pub ts_s: Option<f64>,
 }
 
-/// What one place of the loop bears alone.
+/// Margins at one place of the loop alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopMargin {
     /// Factors of the gain between which the loop stays stable: from 0, and up to infinity, where
     /// nothing bounds it.
     pub gain: [f64; 2],
-    /// Phase that it bears either way, rad; none where no phase is too much.
+    /// Phase margin either way, rad; none where no phase is too much.
     pub phase_rad: Option<f64>,
-    /// Delay that it bears, s; none where no delay is too much. Of sampled loops a shift of phase by
+    /// Delay margin, s; none where no delay is too much. Of sampled loops a shift of phase by
     /// frequency times delay.
     pub delay_s: Option<f64>,
 }

@@ -31,8 +31,8 @@ pub struct SupplyRange {
 /// The margins of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DesignMargins {
-    /// At the inputs. Delays of a sampled loop are exact: the held input arrives late. The law knows
-    /// of no change; its past inputs are those that it asked for.
+    /// At the inputs. Delays of a sampled loop are exact: the held input arrives late. The law
+    /// knows of no change; its past inputs are those that it asked for.
     pub inputs: Margins,
     /// At the sensors, of a design with a filter.
     pub sensors: Option<Margins>,
@@ -248,9 +248,10 @@ fn late_inputs(
         mixed.b.view_mut((0, channel), (own, 1)).copy_from(&now);
         for past in 0..longest.delayed_inputs {
             let column = own + past * channels + channel;
-            let acts = match past < usual.delayed_inputs {
-                true => usual.a.view((0, column), (own, 1)).into_owned(),
-                false => DMatrix::zeros(own, 1),
+            let acts = if past < usual.delayed_inputs {
+                usual.a.view((0, column), (own, 1)).into_owned()
+            } else {
+                DMatrix::zeros(own, 1)
             };
             mixed.a.view_mut((0, column), (own, 1)).copy_from(&acts);
         }

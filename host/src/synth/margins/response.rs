@@ -126,20 +126,22 @@ fn golden([mut low, mut high]: [f64; 2], of: &dyn Fn(f64) -> f64) -> (f64, f64) 
 /// near the edge of stability.
 fn frequencies(poles: &[Complex<f64>], sampled: bool) -> Vec<f64> {
     // Of a pole: its frequency, its distance from the edge, its speed.
-    let seen = |pole: &Complex<f64>| match sampled {
-        true => {
+    let seen = |pole: &Complex<f64>| {
+        if sampled {
             let log = pole.ln();
             (log.im.abs(), log.re.abs().min(PI), log.norm().min(PI))
+        } else {
+            (pole.im.abs(), pole.re.abs(), pole.norm())
         }
-        false => (pole.im.abs(), pole.re.abs(), pole.norm()),
     };
     let seen: Vec<_> = poles.iter().map(seen).collect();
     let speeds = seen.iter().map(|(_, _, speed)| *speed);
     let speeds = || speeds.clone().filter(|speed| *speed > 1e-9);
     let slowest = speeds().fold(if sampled { 1.0 } else { f64::MAX }, f64::min);
-    let highest = match sampled {
-        true => PI,
-        false => 1e4 * speeds().fold(f64::MIN_POSITIVE, f64::max),
+    let highest = if sampled {
+        PI
+    } else {
+        1e4 * speeds().fold(f64::MIN_POSITIVE, f64::max)
     };
     let lowest = 1e-3 * slowest.min(highest);
     let ratio = (highest / lowest).ln();

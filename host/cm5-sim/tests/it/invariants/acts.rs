@@ -12,8 +12,8 @@ use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
 use handstand_shared::plan::Plan;
 
-/// A frame that arrives during a tick is taken at its end, and arming lasts 30 ticks of up to 18 ms:
-/// torque comes on so much later at most, ms.
+/// A frame that arrives during a tick is taken at its end, and arming lasts 30 ticks of up to 18
+/// ms: torque comes on so much later at most, ms.
 pub(super) const TAKEN_MS: f64 = 25.0 + 30.0 * 18.0;
 
 impl Judged {

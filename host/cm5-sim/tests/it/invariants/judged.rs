@@ -150,7 +150,7 @@ impl Judged {
         };
     }
 
-    /// A servo may do what it was told before, or what nobody told it, until it was read.
+    /// A servo may do what it was told before, or what noise told it, until it was read.
     pub(super) fn disturb(&mut self, at: usize) {
         self.disturbed_ms[at] = self.cm5.now_ms();
     }
