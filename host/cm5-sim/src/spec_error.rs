@@ -37,7 +37,7 @@ pub enum SpecError {
 
 const KEYS: &str = "ids, delay, level, baud, drop, flip, late, wrong_id, corrupt_request, echo, \
                     dead, hot, warms, overload, jam, supply, model, firmware, mode, turns, \
-                    turnaround,                     robot, joints, start, lean, lag, gyro, seed";
+                    turnaround, robot, joints, start, lean, lag, gyro, seed";
 
 impl SpecError {
     pub(super) fn value(key: &str, value: &str, expected: &str) -> Self {
