@@ -52,11 +52,7 @@ fn the_elf_keeps_its_budget() {
         "longest tick {} us, RAM {ram} bytes",
         telemetry.longest_tick_us
     );
-    // Those of arming, in which registers are read, are the longest.
-    assert!(
-        telemetry.longest_tick_us <= LONGEST_TICK_US,
-        "{telemetry:?}"
-    );
+    assert!(telemetry.longest_tick_us <= 6500, "{telemetry:?}");
     assert!(ram <= 4096 * 8 / 10, "{telemetry:?}");
 }
 
