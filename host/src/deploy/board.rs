@@ -76,7 +76,7 @@ impl Board {
         gyro: Gyro {
             from_host: true,
             zero: 512,
-            scale: 16,
+            scale: 0,
         },
         range_rad: 0.8,
         joint_range_rad: 1.2,

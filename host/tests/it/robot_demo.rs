@@ -1,6 +1,7 @@
 //! The whole circle on a virtual robot: it falls as believed, and stands as learned.
 
-use handstand::challenge::robot_demo::{HiddenRobot, RobotAnswer, run};
+use crate::common::Bench;
+use handstand::challenge::robot_demo::{HiddenRobot, LIMIT_OPTIONS, RobotAnswer, run};
 use handstand::challenge::unseal;
 
 /// Lag and a dead zone, found in the recordings, carried into the plan. One robot: a diagnosis is
@@ -32,4 +33,11 @@ fn a_robot_that_falls_as_believed_stands_as_learned() {
         "the first attempt"
     );
     assert!(page.contains("Model as learned: stands"), "the second");
+    // The command that it prints makes the plan that stood, and says so beforehand.
+    let bench = Bench::new();
+    bench.put("learned.toml", read("learned.toml"));
+    let line = format!("deploy learned.toml --dry-run --states 1 --json {LIMIT_OPTIONS}");
+    let ran = bench.run(&line);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(ran.json()["fingerprint"], demo.learned.fingerprint);
 }
