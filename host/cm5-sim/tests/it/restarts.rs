@@ -15,6 +15,14 @@ const LIMITS: ArmLimits = ArmLimits {
     speed: MovingSpeed(50),
 };
 
+/// The command to arm within these limits.
+fn within_limits(token: u16) -> Command {
+    Command::Arm {
+        token,
+        limits: LIMITS,
+    }
+}
+
 fn ready(cm5: &mut VirtualCm5) -> u16 {
     let token = greet(cm5).token;
     assert_eq!(ask(cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
@@ -104,10 +112,7 @@ fn a_servo_that_restarts_while_it_is_silent_gets_no_goal() {
 fn a_wheel_that_restarts_under_goals_is_noticed() {
     let mut cm5 = with_wheels();
     let token = ready(&mut cm5);
-    let arm = Command::Arm {
-        token,
-        limits: LIMITS,
-    };
+    let arm = within_limits(token);
     assert_eq!(ask(&mut cm5, &arm), Some(Ok(())));
     say(&mut cm5, &goals(540), 100);
     cm5.bus().servo(DRIVEN[0]).unwrap().restart();
@@ -128,10 +133,7 @@ fn no_servo_is_switched_on_beyond_the_limits_of_arming() {
                 servo.faults = handstand_cm5_sim::Faults::none(seed * 18 + at as u64);
                 servo.faults.corrupt_request = share;
             }
-            let arm = Command::Arm {
-                token,
-                limits: LIMITS,
-            };
+            let arm = within_limits(token);
             cm5.send(&arm);
             for _ in 0..60 {
                 say(&mut cm5, &Command::KeepAlive, 10);
@@ -153,27 +155,12 @@ fn a_servo_that_takes_no_limits_is_not_armed_with() {
     let mut cm5 = VirtualCm5::new();
     let token = ready(&mut cm5);
     cm5.bus().servo(4).unwrap().faults.ignore_writes = true;
-    let refused = ask(
-        &mut cm5,
-        &Command::Arm {
-            token,
-            limits: LIMITS,
-        },
-    );
+    let refused = ask(&mut cm5, &within_limits(token));
     assert_eq!(refused, Some(Err(Refusal::Registers)));
     assert!(!cm5.bus().any_torque());
     cm5.bus().servo(4).unwrap().faults.ignore_writes = false;
     say(&mut cm5, &Command::KeepAlive, 100);
-    assert_eq!(
-        ask(
-            &mut cm5,
-            &Command::Arm {
-                token,
-                limits: LIMITS
-            }
-        ),
-        Some(Ok(()))
-    );
+    assert_eq!(ask(&mut cm5, &within_limits(token)), Some(Ok(())));
 }
 
 /// Writes that come too close to the one before are ignored by the servo.
@@ -184,16 +171,7 @@ fn servos_that_need_a_pause_between_writes_are_armed_within_the_limits() {
         servo.faults.write_ns = 150_000;
     }
     let token = ready(&mut cm5);
-    assert_eq!(
-        ask(
-            &mut cm5,
-            &Command::Arm {
-                token,
-                limits: LIMITS
-            }
-        ),
-        Some(Ok(()))
-    );
+    assert_eq!(ask(&mut cm5, &within_limits(token)), Some(Ok(())));
     say(&mut cm5, &goals(560), 200);
     assert_eq!(cm5.app.condition(), Condition::StreamArmed);
     for servo in &cm5.bus().servos {
@@ -213,10 +191,7 @@ fn no_lost_answer_lifts_a_speed_limit() {
             servo.faults.drop = 0.02;
         }
         let token = ready(&mut cm5);
-        let arm = Command::Arm {
-            token,
-            limits: LIMITS,
-        };
+        let arm = within_limits(token);
         let armed = ask(&mut cm5, &arm);
         if armed != Some(Ok(())) {
             assert_eq!(armed, Some(Err(Refusal::ServoMode)));
@@ -249,16 +224,7 @@ fn two_servos_of_one_id_are_left_out() {
     let mut cm5 = VirtualCm5::new();
     *cm5.bus() = handstand_cm5_sim::Bus::new((1..=18).chain([5]));
     let token = ready(&mut cm5);
-    assert_eq!(
-        ask(
-            &mut cm5,
-            &Command::Arm {
-                token,
-                limits: LIMITS
-            }
-        ),
-        Some(Ok(()))
-    );
+    assert_eq!(ask(&mut cm5, &within_limits(token)), Some(Ok(())));
     for servo in &cm5.bus().servos {
         assert_eq!(
             servo.torque_is_on(),
@@ -274,16 +240,7 @@ fn two_servos_of_one_id_are_left_out() {
 fn speeds_are_no_limits_of_joints() {
     let mut cm5 = with_wheels();
     let token = ready(&mut cm5);
-    assert_eq!(
-        ask(
-            &mut cm5,
-            &Command::Arm {
-                token,
-                limits: LIMITS
-            }
-        ),
-        Some(Ok(()))
-    );
+    assert_eq!(ask(&mut cm5, &within_limits(token)), Some(Ok(())));
     for code in [0, 300] {
         say(&mut cm5, &Command::Speeds(Speeds::pack([code; SERVOS])), 50);
         for servo in &cm5.bus().servos {
