@@ -1,9 +1,10 @@
 //! A first look at every candidate on top of a hypothesis.
 //!
-//! All get a glance, a fit as far as derivatives known before lead; the best third, unless it is
-//! hopeless beside the first, gets a look, for which derivatives are taken again.
+//! All get a glance, a fit as far as derivatives known before lead; the best third, but the best few
+//! only where the rest is hopeless beside the first, gets a look, for which derivatives are taken
+//! again.
 
-use super::budget::{LOOK, SECOND_LOOKS};
+use super::budget::{FINALISTS, LOOK, SECOND_LOOKS};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use crate::fitting::{FitOptions, InitialGuess, PredictionChange, ProjectedResidual};
@@ -28,6 +29,13 @@ pub(super) fn best_third(mut of_candidates: Vec<f64>) -> f64 {
         .get(looks - 1)
         .copied()
         .unwrap_or(f64::INFINITY)
+}
+
+/// The squared error up to which a candidate belongs to the best few.
+fn best_few(mut of_candidates: Vec<f64>) -> f64 {
+    of_candidates.sort_by(f64::total_cmp);
+    let last = of_candidates.iter().take(FINALISTS).last();
+    last.copied().unwrap_or(f64::INFINITY)
 }
 
 impl Evaluator<'_> {
@@ -74,7 +82,8 @@ impl Evaluator<'_> {
     }
 
     /// The largest squared error after a glance that deserves a look: the best third of the
-    /// candidates, unless they are hopeless beside the first.
+    /// candidates, unless they are hopeless beside the first; the best few even so, since a glance
+    /// does not say what a fit would leave whose values have far to go.
     fn worth_a_look(&self, glances: &[Vec<Glance>]) -> f64 {
         let means = |glances: &Vec<Glance>| {
             let means = glances.iter().map(|(_, glance)| glance.search_mean);
@@ -83,9 +92,10 @@ impl Evaluator<'_> {
         let best: Vec<f64> = glances.iter().filter_map(means).collect();
         let all = glances.iter().flatten().map(|(_, glance)| glance);
         let hopeless = self.limit(all, None);
-        match self.small() {
-            true => hopeless,
-            false => best_third(best).min(hopeless),
+        if self.small() {
+            hopeless
+        } else {
+            best_third(best.clone()).min(hopeless).max(best_few(best))
         }
     }
 

@@ -8,6 +8,7 @@
 //! stays free all the same, and is said to be a guess: held wrong, it bends what is looked for
 //! beside it.
 
+mod levers;
 mod settling;
 mod values;
 
@@ -22,6 +23,7 @@ use crate::log::init::Draft;
 use crate::log::{LogRequest, Motion, excerpts, read};
 use crate::model::{AngleZero, Drive, LinkField, Model, ParameterPath};
 use crate::output::number::{measured, mrad};
+use levers::levers_of;
 use rayon::prelude::*;
 use settling::{Settled, Settling};
 use std::path::Path;
@@ -103,7 +105,10 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     };
     begun.iter_mut().for_each(|model| model.angle_zero = *zero);
     begun.push(best.model);
-    let fitted = begun.par_iter().map(|model| best_fit(model, &free, &data));
+    let with_levers = [free.clone(), levers_of(&free)].concat();
+    let fitted = begun
+        .par_iter()
+        .map(|model| best_fit(model, &with_levers, &data));
     let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return Ok(());
     };
@@ -146,9 +151,14 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
         if !is_fitted(LinkField::Com) && link.com_m != drafted.links[index].com_m {
             draft.take(&at(LinkField::Com), link.com_m);
             draft.take(&at(LinkField::Mass), link.mass_kg);
-            let words = format!("{} kg at {} m", rounded(link.mass_kg), rounded(link.com_m));
-            let why = "a guess: a longer lever leaves no room for the inertia that the log shows";
-            draft.note(&format!("mass of link {}", index + 1), &words, why);
+            let lever = format!("{} m", rounded(link.com_m));
+            let why = "a guess: no log tells a lever beside its mass and inertia";
+            if is_fitted(LinkField::Mass) {
+                draft.note(&format!("lever of link {}", index + 1), &lever, why);
+            } else {
+                let words = format!("{} kg at {lever}", rounded(link.mass_kg));
+                draft.note(&format!("mass of link {}", index + 1), &words, why);
+            }
         }
     }
     for (path, interval) in values {

@@ -1,30 +1,24 @@
 //! A first model's values settled: what its log determines told from what it does not, with room
 //! for the links' inertia.
 
-use super::values::is_friction;
+use super::values::{VISCOUS_NM_S_RAD, is_friction};
 use super::{ON, fit};
 use crate::fitting::covariance::{Interval, intervals};
 use crate::fitting::data::FitData;
 use crate::fitting::fit::{Fit, FitOptions};
-use crate::model::{Link, LinkField, Model, ParameterPath};
+use crate::model::{EffectInstance, Model, ParameterPath};
 
 /// A value is told by the log where its interval reaches no further than so many times its size.
 const TOLD: f64 = 3.0;
 /// Friction is shown where its interval reaches less than so many times its size, and not to zero.
 const SHOWN: f64 = 0.9;
 /// Friction without which the error is so many times as large is there, whatever its interval:
-/// beside what the model lacks intervals are wide.
+/// beside what the model lacks intervals are wide. Other levers may raise it no more than so.
 const NEEDED: f64 = 1.05;
-/// Levers that are shortened, in all.
+/// Levers that are changed, in all.
 const LEVERS: usize = 6;
-/// A lever this near, as a share, to the one of the fastest swing is held there by the inertia.
-const AT_SHORTEST: f64 = 0.1;
-/// The inertia is then taken so many times as large.
-const LESS_INERT: f64 = 0.25;
-/// A lever is lengthened to so many times itself.
-const LONGER: f64 = 1.3;
-/// Least inertia about a link's own centre of mass, over that of its mass there about the joint.
-const ROOM: f64 = 0.7;
+/// A model is far from its log where it leaves more than so many times the noise.
+const FAR_OFF: f64 = 3.0;
 /// Estimates beyond so many times a guess, either way, are none.
 const FAR: f64 = 30.0;
 
@@ -48,44 +42,31 @@ impl Settling<'_> {
     /// held wrong it bends whatever is looked for beside it.
     pub fn settle(&self, begun: &Model, mut free: Vec<ParameterPath>) -> Settled {
         let mut model = begun.clone();
-        let (mut levers, mut held) = (0, Vec::new());
+        let (mut levers, mut held, mut hidden) = (0, Vec::new(), Vec::new());
         loop {
             let found = fit(&model, &free, self.data, None, FitOptions::iterations(ON));
             if levers < LEVERS
-                && let Some(link) = self.crowded(&found.model, &free)
+                && let Some(roomier) = self.improved_levers(&found, &free)
             {
                 levers += 1;
-                model = found.model;
-                self.make_room(&mut model.links[link]);
-                continue;
-            }
-            if levers < LEVERS
-                && let Some(link) = too_long(&found.model, &free)
-            {
-                levers += 1;
-                model = found.model;
-                model.links[link].inertia_kg_m2 *= LESS_INERT;
-                continue;
-            }
-            if levers < LEVERS
-                && let Some(outer) = self.too_heavy(&found)
-            {
-                levers += 1;
-                model = found.model;
-                lighten(&mut model.links[outer]);
+                model = roomier;
                 continue;
             }
             let Some(intervals) = intervals(&found, self.data).map(|(intervals, _)| intervals)
             else {
                 // The least important stands last.
                 let Some(path) = free.pop() else {
-                    return settled(model, Vec::new(), held);
+                    return settled(model, Vec::new(), held, hidden);
                 };
                 forget(&mut model, &path, self.drafted);
                 continue;
             };
             if let Some((index, without)) = self.untold_friction(&found, &free, &intervals) {
-                free.remove(index);
+                let path = free.remove(index);
+                if let Some(friction) = hidden_friction(&found, &path) {
+                    hidden.push(friction);
+                    held.push(path);
+                }
                 model = without;
                 continue;
             }
@@ -105,50 +86,17 @@ impl Settling<'_> {
             let is_told = |index: usize| reach(&found, &intervals, index) <= TOLD;
             let told = (0..free.len()).map(|index| is_told(index).then(|| intervals[index]));
             let values = free.iter().cloned().zip(told).collect();
-            return settled(found.model, values, held);
+            return settled(found.model, values, held, hidden);
         }
     }
 
-    /// A link whose lever leaves its inertia little room below what was fitted.
-    fn crowded(&self, model: &Model, free: &[ParameterPath]) -> Option<usize> {
-        free.iter().find_map(|path| match path {
-            ParameterPath::Link {
-                index,
-                field: LinkField::Inertia,
-            } => {
-                let link = &model.links[*index];
-                let about_mass_kg_m2 = link.mass_kg * link.com_m * link.com_m;
-                (link.inertia_kg_m2 < ROOM * about_mass_kg_m2).then_some(*index)
-            }
-            _ => None,
-        })
-    }
-
-    /// Shortens a link's lever to half the length of the pendulum that swings alike, or to half of
-    /// itself, at the same pull of gravity unless its mass is known, and the same inertia about its
-    /// joint.
-    fn make_room(&self, link: &mut Link) {
-        let pull_kg_m = link.mass_kg * link.com_m;
-        let about_joint_kg_m2 = link.inertia_kg_m2 + pull_kg_m * link.com_m;
-        let alike_m = about_joint_kg_m2 / pull_kg_m;
-        link.com_m = (0.5 * alike_m).clamp(0.5 * link.com_m, link.com_m);
-        if !self.mass_is_known {
-            link.mass_kg = pull_kg_m / link.com_m;
-        }
-        link.inertia_kg_m2 = about_joint_kg_m2 - link.mass_kg * link.com_m * link.com_m;
-    }
-
-    /// The link behind one that was left no mass: at the lever it has it weighs too much there.
-    fn too_heavy(&self, found: &Fit) -> Option<usize> {
-        let links = found.model.links.len();
-        let on_bound = found.on_bound();
-        let mut on_bound = found.free.iter().zip(on_bound).filter(|(_, on)| *on);
-        on_bound.find_map(|(path, _)| match path {
-            ParameterPath::Link {
-                index,
-                field: LinkField::Mass,
-            } if index + 1 < links && !self.mass_is_known => Some(index + 1),
-            _ => None,
+    /// The first of the models with more room that follows the log as well.
+    fn improved_levers(&self, found: &Fit, free: &[ParameterPath]) -> Option<Model> {
+        let limit_rad = NEEDED * found.rms(self.data);
+        self.roomier(found).into_iter().find_map(|roomier| {
+            let options = FitOptions::iterations(ON);
+            let refitted = fit(&roomier, free, self.data, None, options);
+            (refitted.rms(self.data) <= limit_rad).then_some(refitted.model)
         })
     }
 
@@ -196,37 +144,27 @@ impl Settling<'_> {
     }
 }
 
-/// A link whose lever is free and its inertia not, where no lever swings faster: as long as its
-/// radius of gyration.
-fn too_long(model: &Model, free: &[ParameterPath]) -> Option<usize> {
-    let is_free =
-        |index: usize, field: LinkField| free.contains(&ParameterPath::Link { index, field });
-    (0..model.links.len()).find(|&index| {
-        let link = &model.links[index];
-        let shortest_m = (link.inertia_kg_m2 / link.mass_kg).sqrt();
-        is_free(index, LinkField::Com)
-            && !is_free(index, LinkField::Inertia)
-            && (link.com_m / shortest_m - 1.0).abs() < AT_SHORTEST
+/// Viscous friction that was taken out of a model that is far from its log: what is missing there
+/// may hide it, for every joint has some.
+fn hidden_friction(found: &Fit, path: &ParameterPath) -> Option<EffectInstance> {
+    let is_far = found.residuals.mean_square().sqrt() > FAR_OFF;
+    let of_path =
+        |effect: &&EffectInstance| ParameterPath::of_effect(effect).any(|own| own == *path);
+    let friction = found.model.effects.iter().find(of_path)?;
+    (is_far && friction.effect.info().id == "viscous").then(|| EffectInstance {
+        values: vec![VISCOUS_NM_S_RAD],
+        ..friction.clone()
     })
 }
 
-/// Lengthens a link's lever at the same pull of gravity and, as far as there is any, the same
-/// inertia about its joint.
-fn lighten(link: &mut Link) {
-    let pull_kg_m = link.mass_kg * link.com_m;
-    let about_joint_kg_m2 = link.inertia_kg_m2 + pull_kg_m * link.com_m;
-    link.com_m *= LONGER;
-    link.mass_kg = pull_kg_m / link.com_m;
-    let left_kg_m2 = about_joint_kg_m2 - pull_kg_m * link.com_m;
-    link.inertia_kg_m2 = left_kg_m2.max(0.1 * pull_kg_m * link.com_m);
-}
-
-/// What was held at its guess stays free, untold.
+/// What was held at its guess stays free, untold; friction that may be hidden does, too.
 fn settled(
-    model: Model,
+    mut model: Model,
     mut values: Vec<(ParameterPath, Option<Interval>)>,
     held: Vec<ParameterPath>,
+    hidden: Vec<EffectInstance>,
 ) -> Settled {
+    model.effects.extend(hidden);
     values.extend(held.into_iter().map(|path| (path, None)));
     Settled { model, values }
 }

@@ -12,7 +12,7 @@ const FRICTIONS: [f64; 2] = [1.0, 10.0];
 const FASTER: f64 = 1.5;
 /// Friction to start from: Coulomb, N m, and viscous, N m s/rad.
 const COULOMB_NM: f64 = 0.005;
-const VISCOUS_NM_S_RAD: f64 = 0.001;
+pub(super) const VISCOUS_NM_S_RAD: f64 = 0.001;
 
 /// Whether an effect is one of those that a first model is given.
 pub(super) fn is_friction(effect: &EffectInstance) -> bool {
