@@ -23,7 +23,7 @@ use crate::log::init::Draft;
 use crate::log::{LogRequest, Motion, excerpts, read};
 use crate::model::{AngleZero, Drive, LinkField, Model, ParameterPath};
 use crate::output::number::{measured, mrad};
-use levers::levers_of;
+use levers::with_levers;
 use rayon::prelude::*;
 use settling::{Settled, Settling};
 use std::path::Path;
@@ -97,15 +97,15 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     let few = excerpts(&read_so(&motions, reversed), SAMPLES);
     let data = windows(&best.model, few, WINDOW_S);
     let free = free_of(&rubbing, draft);
+    let with_levers = with_levers(&free);
     // Short windows may lead astray where they show little: a swing of seconds.
     let mut begun = if drafted.driven_joints().is_empty() {
-        starts(&rubbing, &free)
+        starts(&rubbing, &with_levers)
     } else {
         vec![rubbing]
     };
     begun.iter_mut().for_each(|model| model.angle_zero = *zero);
     begun.push(best.model);
-    let with_levers = [free.clone(), levers_of(&free)].concat();
     let fitted = begun
         .par_iter()
         .map(|model| best_fit(model, &with_levers, &data));
@@ -193,7 +193,7 @@ fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Fitt
         return None;
     }
     let model = &coarsened(model, &few);
-    let free = free_of(model, draft);
+    let free = with_levers(&free_of(model, draft));
     let fitted = |meaning: Meaning| {
         let data = few
             .clone()

@@ -21,13 +21,14 @@ const CARRIED: std::ops::RangeInclusive<f64> = 0.6..=0.8;
 /// Least share of its pull of gravity that a link keeps where the one behind it grows heavier.
 const LEFT: f64 = 0.25;
 
-/// Levers of links whose inertia is fitted and whose lever is not.
-pub(super) fn levers_of(free: &[ParameterPath]) -> Vec<ParameterPath> {
+/// What is fitted, and the levers of links whose inertia is.
+pub(super) fn with_levers(free: &[ParameterPath]) -> Vec<ParameterPath> {
     let levers = fitted_inertias(free).map(|index| ParameterPath::Link {
         index,
         field: LinkField::Com,
     });
-    levers.filter(|path| !free.contains(path)).collect()
+    let levers = levers.filter(|path| !free.contains(path));
+    free.iter().copied().chain(levers).collect()
 }
 
 impl Settling<'_> {

@@ -6,7 +6,7 @@ use super::{ON, fit};
 use crate::fitting::covariance::{Interval, intervals};
 use crate::fitting::data::FitData;
 use crate::fitting::fit::{Fit, FitOptions};
-use crate::model::{EffectInstance, Model, ParameterPath};
+use crate::model::{EffectInstance, LinkField, Model, ParameterPath};
 
 /// A value is told by the log where its interval reaches no further than so many times its size.
 const TOLD: f64 = 3.0;
@@ -179,10 +179,16 @@ fn reach(found: &Fit, intervals: &[Interval], index: usize) -> f64 {
 /// Whether an estimate is one that a bench has: a mass of 60 kg on a servo tells of a motion that
 /// the model does not follow.
 fn is_plausible(path: &ParameterPath, value: f64, guess: f64) -> bool {
-    match path {
-        ParameterPath::Effect { .. } => true,
-        _ => (guess / FAR..=guess * FAR).contains(&value),
-    }
+    let far = match path {
+        ParameterPath::Effect { .. } => return true,
+        // It goes with the square of the length.
+        ParameterPath::Link {
+            field: LinkField::Inertia,
+            ..
+        } => FAR * FAR,
+        _ => FAR,
+    };
+    (guess / far..=guess * far).contains(&value)
 }
 
 /// Takes a value back: friction out, another to its guess.

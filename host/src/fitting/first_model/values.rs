@@ -124,8 +124,10 @@ fn friction_of<'a>(model: &'a Model, id: &'a str) -> impl Iterator<Item = Parame
 }
 
 /// The models that fits start from: drives, or without a motor levers, an order of magnitude
-/// stronger or weaker, and little or much friction.
+/// stronger or weaker, and little or much friction. A lever stands for its link's mass, too: with
+/// it grow both the pull of gravity and the inertia.
 pub(super) fn starts(model: &Model, free: &[ParameterPath]) -> Vec<Model> {
+    let link = |index: usize, field: LinkField| ParameterPath::Link { index, field };
     let scaled = |scale: f64, friction: f64| {
         let mut start = model.clone();
         for path in free {
@@ -135,9 +137,13 @@ pub(super) fn starts(model: &Model, free: &[ParameterPath]) -> Vec<Model> {
                     ..
                 } => scale,
                 ParameterPath::Link {
-                    field: LinkField::Mass | LinkField::Com,
+                    field: LinkField::Com,
                     ..
                 } => scale,
+                ParameterPath::Link {
+                    index,
+                    field: LinkField::Mass,
+                } if !free.contains(&link(*index, LinkField::Com)) => scale,
                 ParameterPath::Link { .. } | ParameterPath::Joint { .. } => 1.0,
                 _ => friction,
             };
