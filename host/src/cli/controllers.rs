@@ -7,6 +7,8 @@
 //! every joint stays within 10 deg of the pose over the last two seconds. The region is the largest
 //! spread of starts of which 95 % are stabilised. Every effect of the model acts in the simulation;
 //! the designs leave out those without a derivative.
+//! A robot that stays from the same start without any command, held by friction, does not count as
+//! stabilised.
 //!
 //! A controller knows the nominal model and what can be measured beforehand (sampling time, delay,
 //! nominal dead zone, limit, resolutions); it does not know a robot's own dead zone (within a fifth
@@ -18,7 +20,7 @@
 //! ```
 //!
 //! Exit code 1 when under some condition no controller stabilises 95 %. `--json` prints a list of
-//! `controller`, `condition`, `robots`, `stabilised`, `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
+//! `controller`, `condition`, `robots`, `stabilised`, `held` (runs that stay without any command), `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
 //! `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::{ExitStatus, Talk, input, show};
@@ -81,6 +83,8 @@ struct ControllerTrial {
     condition: &'static str,
     robots: usize,
     stabilised: f64,
+    /// Runs that stay without any command: not among the stabilised.
+    held: usize,
     fallen: f64,
     rms_angle_rad: Option<f64>,
     limit_cycle_rad: Option<f64>,
@@ -160,6 +164,7 @@ fn trials(
                 condition: condition.id,
                 robots: figures.runs,
                 stabilised: figures.stabilised_share,
+                held: figures.held,
                 fallen: figures.fallen_share,
                 rms_angle_rad: figures.rms_angle_rad,
                 limit_cycle_rad: figures.limit_cycle_rad,

@@ -21,7 +21,7 @@
 //! script for MATLAB and Octave.
 
 use super::weight_arg::{WeightArg, weight};
-use super::{ExitStatus, Talk};
+use super::{ExitStatus, Talk, input};
 use handstand::model::Model;
 use handstand::report::{gains_json, margins_text, tuned_text, verification_text, with_margins};
 use handstand::study::{TUNING_STEPS, Tuned, left_out, tune, verification_steps, verify};
@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 mod request;
 
 pub(super) use request::requested;
-use request::{Pose, pose};
+use request::{Pose, SpeedsArg, pose};
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
@@ -73,9 +73,12 @@ pub struct GainsArgs {
     /// Add a Kalman filter for rounded angles and a gyro on the first link
     #[arg(long)]
     lqg: bool,
-    /// Step of the measured angles, rad [default: 300 degrees / 1024]
-    #[arg(long, value_name = "RAD", requires = "lqg")]
+    /// Step of the measured angles, rad [default: the model's; with --lqg 300 degrees / 1024]
+    #[arg(long, value_name = "RAD", value_parser = input::positive, conflicts_with = "continuous")]
     position_step: Option<f64>,
+    /// Speeds that the simulated law is given
+    #[arg(long, value_enum, default_value = "true", conflicts_with_all = ["lqg", "continuous"])]
+    speeds: SpeedsArg,
     /// Step of the gyro, rad/s [default: 10 degrees per second]
     #[arg(long, value_name = "RAD_S", requires = "lqg")]
     gyro_step: Option<f64>,
@@ -217,6 +220,8 @@ impl GainsArgs {
             (!self.without.is_empty(), "--without"),
             (self.continuous, "--continuous"),
             (self.lqg, "--lqg"),
+            (self.position_step.is_some(), "--position-step"),
+            (self.speeds != SpeedsArg::True, "--speeds"),
             (self.range.is_some(), "--range"),
             (self.limit.is_some(), "--limit"),
             (self.state_step.is_some(), "--state-step"),

@@ -1,10 +1,10 @@
 //! The response of a designed loop from a start at rest, with every effect of the model.
 
-use super::verify::closed_loop;
+use super::verified_loop::{closed_loop, law};
 use crate::error::Result;
 use crate::model::Model;
-use crate::sim::closed_loop::{InitialState, StateFeedback, stream};
-use crate::synth::{Design, Request, rows};
+use crate::sim::closed_loop::{InitialState, stream};
+use crate::synth::{Design, Request};
 
 /// Angles and commands over time.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,7 +17,7 @@ pub struct LoopResponse {
     pub command: Vec<Vec<f64>>,
 }
 
-/// Simulates the loop of a design for `seconds` from these departures from its pose, rad, at rest;
+/// Simulates the loop of a design under the law that is exported for `seconds` from these departures from its pose, rad, at rest;
 /// it ends early where the robot falls.
 ///
 /// # Errors
@@ -31,7 +31,7 @@ pub fn response(
 ) -> Result<LoopResponse> {
     let closed = closed_loop(model.clone(), design, request)?;
     let joints = model.link_count();
-    let controller = StateFeedback::new(joints, rows(&design.gains.k)).feeding(&design.u0);
+    let controller = law(design);
     let start = InitialState {
         command: design.u0.clone(),
         ..InitialState::at(start_rad)
@@ -41,7 +41,7 @@ pub fn response(
         command: vec![Vec::new(); design.u0.len()],
         ..LoopResponse::default()
     };
-    closed.watch(&controller, &start, seconds, stream(1, 0), |sample| {
+    closed.watch(&*controller, &start, seconds, stream(1, 0), |sample| {
         response.time_s.push(sample.time_s);
         for (all, angle) in response.angle_rad.iter_mut().zip(sample.angle_rad) {
             all.push(*angle);

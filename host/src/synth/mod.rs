@@ -54,7 +54,7 @@ pub use operating_point::input_delay_s;
 pub use plan::{PlanReason, StateFeedbackPlan};
 pub use pose::balanced;
 pub use quantise::{Format, Ranges, quantise};
-pub use request::{Request, Sensors, Time};
+pub use request::{Readings, Request, Sensors, Time};
 pub use robust::{multi_model, multi_model_continuation, spectral_radius};
 pub use signal::Signal;
 pub use stiffness::{Stiffness, stiffness};

@@ -8,7 +8,7 @@
 //! `--json` prints a list of sweeps: `sweep`, `unit`, `levels` (`level`, `label`, `figures`,
 //! `tilt_border_rad`, `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
 
-use crate::cli::show::{or_dash, table, table_of};
+use crate::cli::show::{self, or_dash, table, table_of};
 use crate::cli::{ExitStatus, Talk};
 use handstand::output::number::exact;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
@@ -189,7 +189,9 @@ fn shown((quantity, levels): Swept, ran: &Sweep) -> String {
         let why = level.refused.as_ref()?;
         Some(format!("{}: no controller, {why}", level.label))
     });
-    let refused: Vec<String> = refused.collect();
+    let figures = ran.levels.iter().filter_map(|level| level.figures);
+    let held = show::held(figures.map(|figures| figures.held).sum());
+    let refused: Vec<String> = refused.chain(held).collect();
     format!(
         "{}\n{}\n",
         table_of(&ran.levels, columns),
