@@ -249,6 +249,16 @@ fn loop_without(tested: &VerifiedLoop<'_>, one: &UndesignedEffect) -> Result<Wit
     })
 }
 
+/// Figures of the starts near the pose.
+///
+/// # Errors
+/// As [`verify`].
+pub(super) fn figures_near(model: &Model, design: &Design, request: &Request) -> Result<Figures> {
+    let tested = VerifiedLoop::new(model, design, request, &|| ());
+    let closed = tested.closed_loop(&[])?;
+    Ok(tested.figures(&closed, tested.law(), NEAR_RAD))
+}
+
 /// Figures of the starts near the pose, and the region, empty if those are not stabilised.
 ///
 /// # Errors
