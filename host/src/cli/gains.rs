@@ -23,7 +23,9 @@
 use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk, input};
 use handstand::model::Model;
-use handstand::report::{gains_json, margins_text, tuned_text, verification_text, with_margins};
+use handstand::report::{
+    GainsReport, gains_json, gains_page, margins_text, tuned_text, verification_text, with_margins,
+};
 use handstand::study::{TUNING_STEPS, Tuned, left_out, tune, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, DesignError, LoopFigures, Request};
@@ -114,6 +116,9 @@ pub struct GainsArgs {
     /// Write plant, weights and gains for other programs: .json or .m
     #[arg(long, value_name = "FILE", value_parser = state_space)]
     state_space: Option<PathBuf>,
+    /// Write a page with pictures: responses, margins, poles, region
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
     /// Replace files that exist
     #[arg(long)]
     force: bool,
@@ -170,6 +175,17 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
         )
     })?;
     write(args, &design, &made, &data, talk)?;
+    if let Some(file) = &args.report {
+        let page = gains_page(&GainsReport {
+            model: &whole,
+            request: &request,
+            design: &design,
+            figures: figures.as_ref(),
+            verified: &verified,
+            made: &made,
+        })?;
+        talk.write(file, &page, args.force)?;
+    }
     Ok(ExitStatus::answer(verified.stabilised))
 }
 
@@ -231,6 +247,7 @@ impl GainsArgs {
             (self.name != export::C_NAME, "--name"),
             (self.csv.is_some(), "--csv"),
             (self.state_space.is_some(), "--state-space"),
+            (self.report.is_some(), "--report"),
         ];
         let mut names = given.into_iter().filter(|(given, _)| *given);
         names.next().map(|(_, name)| name)

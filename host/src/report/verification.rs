@@ -115,9 +115,10 @@ fn lasting(verified: &Verification) -> String {
 fn swing(verified: &Verification, slides: bool) -> Option<String> {
     let near = &verified.near;
     let (cycle, torque) = (near.limit_cycle_rad?, near.rms_torque_nm?);
-    let of = match near.stabilised_share >= STABILISED_SHARE {
-        true => "medians".to_string(),
-        false => format!("medians of the {} that stay alone", near.stabilised),
+    let of = if near.stabilised_share >= STABILISED_SHARE {
+        "medians".to_string()
+    } else {
+        format!("medians of the {} that stay alone", near.stabilised)
     };
     Some(format!(
         "Limit cycle {:.2} deg{} peak to peak, {torque:.3} N m{} RMS ({of}).",
@@ -189,9 +190,10 @@ fn ellipsoid(verified: &Verification, slides: bool) -> Option<String> {
 /// That the robot stays without control as well, if it does.
 fn uncontrolled(verified: &Verification) -> Option<String> {
     let without = &verified.uncontrolled;
-    let verdict = match verified.near.stabilised_share >= STABILISED_SHARE {
-        true => "these runs prove nothing of the gains",
-        false => "the gains drive it away",
+    let verdict = if verified.near.stabilised_share >= STABILISED_SHARE {
+        "these runs prove nothing of the gains"
+    } else {
+        "the gains drive it away"
     };
     verified.stays_uncontrolled.then(|| {
         format!(

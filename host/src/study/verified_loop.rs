@@ -9,7 +9,8 @@ use super::verify::UndesignedEffect;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
 use crate::sim::closed_loop::{
-    ClosedLoop, Commands, Controller, Gyro, InitialState, Sensor, StateFeedback, set_delay, stream,
+    ClosedLoop, Commands, Controller, Gyro, InitialState, Outcome, Sensor, StateFeedback,
+    set_delay, stream,
 };
 use crate::synth::controllers::{CompensatorLaw, FixedPointFeedback};
 use crate::synth::{Design, Request, Time, continuous_period_s, rows};
@@ -152,6 +153,15 @@ impl<'a> VerifiedLoop<'a> {
             (self.done)();
             Ok(outcomes)
         })
+    }
+
+    /// From each of these departures, rad, at rest.
+    pub fn from_each(&self, closed: &ClosedLoop, angles: &[Vec<f64>]) -> Vec<Outcome> {
+        let starts = angles
+            .iter()
+            .map(|angles| self.fed(InitialState::at(angles.clone())));
+        let starts: Vec<InitialState> = starts.collect();
+        closed.run_all(self.law(), &starts, SECONDS, 1)
     }
 
     fn starts(&self, spread_rad: f64, runs: u64) -> Vec<InitialState> {

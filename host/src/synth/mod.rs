@@ -47,7 +47,8 @@ pub use gains::{Gains, continuous_period_s, dlqr, lqr};
 pub use linearise::{Linearisation, linearise};
 pub use loop_figures::LoopFigures;
 pub use margins::{
-    DesignMargins, DiskMargin, LoopMargin, Margins, OpenLoop, Peak, SupplyRange, design_margins,
+    DesignMargins, DiskMargin, LoopMargin, Margins, OpenLoop, Peak, SingularValues, SupplyRange,
+    design_margins, singular_values,
 };
 pub use omitted::{NonSmooth, OmittedEffect};
 pub use operating_point::input_delay_s;

@@ -55,7 +55,13 @@ pub(in crate::cli) fn requested(
     args: &GainsArgs,
     talk: &Talk,
 ) -> Result<(Model, Request, Provenance)> {
-    let files = [&args.rust, &args.c, &args.csv, &args.state_space];
+    let files = [
+        &args.rust,
+        &args.c,
+        &args.csv,
+        &args.state_space,
+        &args.report,
+    ];
     for file in files.into_iter().flatten() {
         output::vacant(file, args.force)?;
     }
