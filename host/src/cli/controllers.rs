@@ -23,6 +23,7 @@
 //! `controller`, `condition`, `robots`, `stabilised`, `held` (runs that stay without any command), `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
 //! `rms_torque_nm`, `region_rad`, `region_open`.
 
+use super::gains_choice::GainsChoice;
 use super::{ExitStatus, Talk, input, show};
 use handstand::study::{
     CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
@@ -43,6 +44,8 @@ pub struct ControllersArgs {
     /// A controller to try, by name; all without it
     #[arg(long = "controller", value_name = "NAME")]
     controllers: Vec<String>,
+    #[command(flatten)]
+    gains: GainsChoice,
     /// A condition, by name; all without it
     #[arg(long = "condition", value_name = "NAME")]
     conditions: Vec<String>,
@@ -111,6 +114,9 @@ pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
         output::vacant(file, args.force)?;
     }
     let model = Model::load(file)?;
+    let designs = args
+        .gains
+        .designs(&args.controllers, designs, (&model, args.ts))?;
     show::omitted(&model, talk)?;
     let trials = trials(args, &model, &designs, &conditions, talk)?;
     if let Some(file) = &args.csv {
@@ -153,6 +159,7 @@ fn trials(
             bar.set_message(format!("{} under {}", design.info().title, condition.title));
             let done = || bar.inc(1);
             let mut case = Case::ideal(model.clone(), *design, args.ts);
+            args.gains.weigh(&mut case)?;
             let uncertain = condition.apply(&mut case);
             let figures = judge(&case, &uncertain, &judging, &done)?;
             let region = match few.runs {

@@ -27,6 +27,7 @@ mod plot;
 mod quantities;
 mod quantity;
 mod region;
+mod region_map;
 mod response;
 mod shard;
 mod summary;
@@ -59,7 +60,8 @@ pub use quantity::{
 };
 pub(crate) use region::bisect;
 pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
-pub use response::{LoopResponse, response};
+pub use region_map::{MappedStart, region_map};
+pub use response::{LoopResponse, response, step_response};
 pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};

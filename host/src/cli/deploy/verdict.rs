@@ -21,12 +21,7 @@ const SEED: u64 = 1;
 /// # Errors
 /// A model that is no robot on these servos.
 #[cfg(feature = "virtual-cm5")]
-pub fn of(
-    model: &Model,
-    plan: &Plan,
-    basis: &PlanBasis,
-    talk: &Talk,
-) -> Result<Option<Rehearsal>> {
+pub fn of(model: &Model, plan: &Plan, basis: &PlanBasis, talk: &Talk) -> Result<Option<Rehearsal>> {
     let setting = Setting {
         lag_s: basis.timing.lag_s,
         supply_v: basis.supply_v,

@@ -8,6 +8,7 @@
 //! `--json` prints a list of sweeps: `sweep`, `unit`, `levels` (`level`, `label`, `figures`,
 //! `tilt_border_rad`, `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
 
+use crate::cli::gains_choice::GainsChoice;
 use crate::cli::show::{self, or_dash, table, table_of};
 use crate::cli::{ExitStatus, Talk};
 use handstand::output::number::exact;
@@ -30,8 +31,10 @@ pub struct SweepArgs {
     #[arg(long, value_name = "FILE.toml")]
     study: Option<PathBuf>,
     /// Controller instead of the study's
-    #[arg(long, value_name = "NAME", value_parser = controller)]
+    #[arg(long, value_name = "NAME", value_parser = controller, conflicts_with = "plan")]
     controller: Option<&'static str>,
+    #[command(flatten)]
+    gains: GainsChoice,
     /// Levels instead of the sweep's own
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true)]
     levels: Vec<f64>,
@@ -98,6 +101,7 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(design) = args.controller.and_then(design) {
         study.case.control.design = design;
     }
+    args.gains.put_into(&mut study.case)?;
     if let Some(folder) = &args.output {
         super::write::folder(folder)?;
         for (quantity, _) in &chosen {

@@ -135,7 +135,7 @@ fn the_longest_delay_is_the_one_of_the_eigenvalues() {
         longest_linear(design(id).unwrap(), &known, told, 1e-3, 0.03).unwrap()
     };
     let dlqr_longest = longest("dlqr", Some(0.0));
-    let (q, r) = known.weights();
+    let (q, r) = known.weights().unwrap();
     let k = dlqr(&zoh(&known.plant, 0.01, 0.0).unwrap(), &q, &r)
         .unwrap()
         .k;

@@ -32,7 +32,7 @@ impl ControllerDesign for Regulator {
     }
 
     fn build(&self, model: &DesignModel) -> Result<Box<dyn Controller>> {
-        let (q, r) = model.weights();
+        let (q, r) = model.weights()?;
         let k = dlqr(&zoh(&model.plant, model.period_s, model.delay_s)?, &q, &r)?.k;
         if model.word_bits == 0 {
             let law = StateFeedback::new(model.joints(), rows(&k));
@@ -45,9 +45,10 @@ impl ControllerDesign for Regulator {
 /// What the board computes, bit for bit, if its words have 16 bits.
 fn fixed_point(model: &DesignModel, k: &DMatrix<f64>) -> Result<FixedPointFeedback> {
     let joints = model.joints();
-    let torque_nm = match model.limit_nm.is_finite() {
-        true => model.limit_nm,
-        false => TORQUE_RANGE_NM,
+    let torque_nm = if model.limit_nm.is_finite() {
+        model.limit_nm
+    } else {
+        TORQUE_RANGE_NM
     };
     let range = |state: usize| match state {
         _ if state < joints => ANGLE_RANGE_RAD,
