@@ -52,7 +52,7 @@ pub fn region_map(
         angles
     };
     let all: Vec<Vec<f64>> = starts.iter().map(angles).collect();
-    let outcomes = verified.from_each(&closed, &all);
+    let outcomes = verified.outcomes(&closed, &all);
     for (start, outcome) in starts.iter_mut().zip(outcomes) {
         start.stabilised = outcome.stabilised;
     }

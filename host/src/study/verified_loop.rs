@@ -156,7 +156,7 @@ impl<'a> VerifiedLoop<'a> {
     }
 
     /// From each of these departures, rad, at rest.
-    pub fn from_each(&self, closed: &ClosedLoop, angles: &[Vec<f64>]) -> Vec<Outcome> {
+    pub fn outcomes(&self, closed: &ClosedLoop, angles: &[Vec<f64>]) -> Vec<Outcome> {
         let starts = angles
             .iter()
             .map(|angles| self.fed(InitialState::at(angles.clone())));

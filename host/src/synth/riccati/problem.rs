@@ -48,12 +48,12 @@ impl Problem<'_> {
         let size = self.q.amax().max(1e-3 * self.r.amax());
         let seen = self.q + DMatrix::identity(n, n) * size;
         let seen = self.doubled(&seen).and_then(|x| newton::refine(self, x));
-        seen.or_else(|| self.from_dearer_inputs())
+        seen.or_else(|| self.solve_by_dearer_inputs())
     }
 
     /// Cheap inputs leave doubling too few digits; gains of dearer ones stabilise as well, which is
     /// all that Newton's iteration needs.
-    fn from_dearer_inputs(&self) -> Option<Solution> {
+    fn solve_by_dearer_inputs(&self) -> Option<Solution> {
         DEARER.iter().find_map(|factor| {
             let r = self.r * *factor;
             let dearer = Problem { r: &r, ..*self };
