@@ -74,8 +74,8 @@ mod tests {
         let table = Table::read(&fixed).unwrap();
         assert_eq!(table.past(), 0);
         assert_eq!(table.inputs(&[1.5, -1.0, 0.0, 0.0, 0.0, 0.0]), [1.0]);
-        // (9 - 16) / 2 is floored to -4, not cut to -3.
-        assert_eq!(table.inputs(&[1.5, 0.07, 0.0, 0.0, 0.0, 0.0]), [-0.75]);
+        // (9 - 10) / 2 is floored to -1, not cut to 0.
+        assert_eq!(table.inputs(&[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), [-0.25]);
         assert_eq!(table.inputs(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]), [-1.0]);
     }
 }
