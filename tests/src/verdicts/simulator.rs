@@ -154,8 +154,8 @@ impl<'a> Simulation<'a> {
             let free = self.w;
             self.w = self.rubbed(free);
             // The impulse acts over the step: half of its change of speed counts for the way.
-            for j in 0..3 {
-                self.q[j] += 0.5 * h * (self.w[j] - free[j]);
+            for ((q, w), free) in self.q.iter_mut().zip(&self.w).zip(&free) {
+                *q += 0.5 * h * (w - free);
             }
         }
         self.read(&before);
