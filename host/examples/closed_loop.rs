@@ -8,7 +8,7 @@
 use handstand::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, Outcome, StateFeedback, stream,
 };
-use handstand::synth::{Design, Format, Request, Time, Weight, rows, upright};
+use handstand::synth::{Design, Format, Readings, Request, Time, Weight, rows, upright};
 use handstand::{Model, Result};
 use std::path::Path;
 
@@ -63,6 +63,7 @@ fn request(robot: &Model) -> Request {
             delay_s: None,
         },
         sensors: None,
+        readings: Readings::default(),
         state_range: Weight::Diagonal(vec![0.5, 0.5, 0.5, 10.0, 10.0, 10.0]),
         input_range: None,
         format: Format::default(),

@@ -4,7 +4,7 @@
 //! cargo run --release --example gains
 //! ```
 
-use handstand::synth::{Design, Format, Request, Time, Weight, upright};
+use handstand::synth::{Design, Format, Readings, Request, Time, Weight, upright};
 use handstand::{Model, Result};
 use std::path::Path;
 
@@ -35,6 +35,7 @@ pub fn regulator() -> Result<Design> {
             delay_s: Some(0.01),
         },
         sensors: None,
+        readings: Readings::default(),
         // The fixed-point law is proven not to overflow within half a radian and 10 rad/s.
         state_range: Weight::Diagonal(vec![0.5, 0.5, 0.5, 10.0, 10.0, 10.0]),
         input_range: None,

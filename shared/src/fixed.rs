@@ -42,9 +42,15 @@ pub const fn saturate(value: i32, low: i16, high: i16) -> i16 {
 /// Sum of products; wraps, so the factors must be known to be small enough.
 #[inline]
 pub fn mac(k: &[i16], x: &[i16]) -> i32 {
-    k.iter().zip(x).fold(0, |sum: i32, (&k, &x)| {
-        sum.wrapping_add(i32::from(k).wrapping_mul(i32::from(x)))
-    })
+    k.iter()
+        .zip(x)
+        .fold(0, |sum: i32, (&k, &x)| mac_one(sum, k, x))
+}
+
+/// `sum` and one product more; wraps likewise.
+#[inline]
+pub(crate) const fn mac_one(sum: i32, k: i16, x: i16) -> i32 {
+    sum.wrapping_add((k as i32).wrapping_mul(x as i32))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The control law: u = sat(u0 - K (x - x0)), with one rounding and one saturation.
 
 #[cfg(not(target_arch = "avr"))]
-use crate::fixed::{mac, saturate, shift_right};
+use crate::fixed::{mac, mac_one, saturate, shift_right};
 use crate::gains::{GainTable, Row};
 
 #[cfg(target_arch = "avr")]
@@ -45,7 +45,40 @@ pub(crate) fn input<const N: usize>(row: &Row<N>, departure: &[i16; N]) -> i16 {
 #[cfg(not(target_arch = "avr"))]
 #[inline]
 fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
-    saturate(shift_right(sum, row.shift), row.low, row.high)
+    rounded(sum, row.shift, [row.low, row.high])
+}
+
+#[cfg(not(target_arch = "avr"))]
+#[inline]
+fn rounded(sum: i32, shift: u8, [low, high]: [i16; 2]) -> i16 {
+    saturate(shift_right(sum, shift), low, high)
+}
+
+/// A row of gains whose number of states is known at run time: what a simulation of any robot
+/// computes with. Same arithmetic as [`control`].
+#[cfg(not(target_arch = "avr"))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RowRef<'a> {
+    /// As [`Row::k`].
+    pub k: &'a [i16],
+    /// As [`Row::bias`].
+    pub bias: i32,
+    /// As [`Row::shift`].
+    pub shift: u8,
+    /// [`Row::low`] and [`Row::high`].
+    pub limits: [i16; 2],
+}
+
+#[cfg(not(target_arch = "avr"))]
+impl RowRef<'_> {
+    /// The row's input for the states `x` about `x0`, all in the table's steps.
+    #[inline]
+    pub fn input(&self, x0: &[i16], x: &[i16]) -> i16 {
+        let departures = x.iter().zip(x0).map(|(x, x0)| x.saturating_sub(*x0));
+        let products = self.k.iter().zip(departures);
+        let sum = products.fold(0, |sum: i32, (k, x)| mac_one(sum, *k, x));
+        rounded(self.bias.wrapping_sub(sum), self.shift, self.limits)
+    }
 }
 
 /// `bias` - sum of products, wrapping.
@@ -81,6 +114,8 @@ mod tests {
                 let exact = f64::from(u0[i]) - sum as f64 / 2f64.powi(i32::from(shift[i]));
                 let rounded = (exact + 0.5).floor().clamp(-f64::from(limit[i]), f64::from(limit[i]));
                 prop_assert_eq!(f64::from(u[i]), rounded);
+                let row = RowRef { k: &k[i], bias: bias[i], shift: shift[i], limits: limits[i] };
+                prop_assert_eq!(row.input(&x0, &x), u[i]);
             }
         }
     }

@@ -13,3 +13,4 @@ pub mod peers;
 pub mod reading;
 pub mod refit;
 pub mod spoiled;
+pub mod verdicts;

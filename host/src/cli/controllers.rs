@@ -7,6 +7,8 @@
 //! every joint stays within 10 deg of the pose over the last two seconds. The region is the largest
 //! spread of starts of which 95 % are stabilised. Every effect of the model acts in the simulation;
 //! the designs leave out those without a derivative.
+//! A robot that stays from the same start without any command, held by friction, does not count as
+//! stabilised.
 //!
 //! A controller knows the nominal model and what can be measured beforehand (sampling time, delay,
 //! nominal dead zone, limit, resolutions); it does not know a robot's own dead zone (within a fifth
@@ -18,9 +20,10 @@
 //! ```
 //!
 //! Exit code 1 when under some condition no controller stabilises 95 %. `--json` prints a list of
-//! `controller`, `condition`, `robots`, `stabilised`, `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
+//! `controller`, `condition`, `robots`, `stabilised`, `held` (runs that stay without any command), `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
 //! `rms_torque_nm`, `region_rad`, `region_open`.
 
+use super::gains_choice::GainsChoice;
 use super::{ExitStatus, Talk, input, show};
 use handstand::study::{
     CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
@@ -41,6 +44,8 @@ pub struct ControllersArgs {
     /// A controller to try, by name; all without it
     #[arg(long = "controller", value_name = "NAME")]
     controllers: Vec<String>,
+    #[command(flatten)]
+    gains: GainsChoice,
     /// A condition, by name; all without it
     #[arg(long = "condition", value_name = "NAME")]
     conditions: Vec<String>,
@@ -81,6 +86,8 @@ struct ControllerTrial {
     condition: &'static str,
     robots: usize,
     stabilised: f64,
+    /// Runs that stay without any command: not among the stabilised.
+    held: usize,
     fallen: f64,
     rms_angle_rad: Option<f64>,
     limit_cycle_rad: Option<f64>,
@@ -107,6 +114,9 @@ pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
         output::vacant(file, args.force)?;
     }
     let model = Model::load(file)?;
+    let designs = args
+        .gains
+        .designs(&args.controllers, designs, (&model, args.ts))?;
     show::omitted(&model, talk)?;
     let trials = trials(args, &model, &designs, &conditions, talk)?;
     if let Some(file) = &args.csv {
@@ -149,6 +159,7 @@ fn trials(
             bar.set_message(format!("{} under {}", design.info().title, condition.title));
             let done = || bar.inc(1);
             let mut case = Case::ideal(model.clone(), *design, args.ts);
+            args.gains.weigh(&mut case)?;
             let uncertain = condition.apply(&mut case);
             let figures = judge(&case, &uncertain, &judging, &done)?;
             let region = match few.runs {
@@ -160,6 +171,7 @@ fn trials(
                 condition: condition.id,
                 robots: figures.runs,
                 stabilised: figures.stabilised_share,
+                held: figures.held,
                 fallen: figures.fallen_share,
                 rms_angle_rad: figures.rms_angle_rad,
                 limit_cycle_rad: figures.limit_cycle_rad,

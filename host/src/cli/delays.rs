@@ -22,13 +22,14 @@
 //! that tolerate the total).
 
 use super::controllers::{chosen_conditions, chosen_designs};
+use super::gains_choice::GainsChoice;
 use super::{ExitStatus, Talk, input, show};
 use handstand::output::table::TableColumn;
 use handstand::study::{
     Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
     longest_stabilised,
 };
-use handstand::synth::controllers::{ControllerDesign, DesignModel};
+use handstand::synth::controllers::{ControllerDesign, DEFAULT, DesignModel};
 use handstand::synth::upright;
 use handstand::{Model, Result};
 use serde::Serialize;
@@ -43,6 +44,8 @@ pub struct DelaysArgs {
     /// A controller, by name; all without it
     #[arg(long = "controller", value_name = "NAME")]
     controllers: Vec<String>,
+    #[command(flatten)]
+    gains: GainsChoice,
     /// Condition of the simulated robots
     #[arg(long, value_name = "NAME", default_value = "all")]
     condition: String,
@@ -83,13 +86,17 @@ struct PathBudget {
     servo_s: f64,
     total_s: f64,
     stable: Vec<&'static str>,
-    stabilised: Vec<&'static str>,
+    /// None where no robot was simulated.
+    stabilised: Option<Vec<&'static str>>,
 }
 
 /// Searches and prints.
 pub fn run(args: &DelaysArgs, talk: &Talk) -> Result<ExitStatus> {
     let designs = chosen_designs(&args.controllers)?;
     let model = Model::load(&args.model)?;
+    let designs = args
+        .gains
+        .designs(&args.controllers, designs, (&model, args.ts))?;
     let margins = search(args, &model, &designs, talk)?;
     let budget = |path| dead_times().map(move |servo_s| (path, servo_s));
     let ways = SIGNAL_PATHS.iter().flat_map(budget);
@@ -112,7 +119,13 @@ fn search(
     designs: &[&'static dyn ControllerDesign],
     talk: &Talk,
 ) -> Result<Vec<DelayMargins>> {
-    let nominal = DesignModel::new(model, &upright(model), args.ts)?;
+    let mut weighed = Case::ideal(model.clone(), DEFAULT, args.ts);
+    args.gains.weigh(&mut weighed)?;
+    let nominal = DesignModel {
+        q: weighed.control.q.clone(),
+        r: weighed.control.r.clone(),
+        ..DesignModel::new(model, &upright(model), args.ts)?
+    };
     let conditions = chosen_conditions(std::slice::from_ref(&args.condition))?;
     let judging = Judging {
         runs: args.robots as usize,
@@ -127,7 +140,8 @@ fn search(
         bar.set_message(design.info().title.to_string());
         let linear =
             |known_s: Option<f64>| longest_linear(*design, &nominal, known_s, step_s, until_s);
-        let mut case = Case::ideal(model.clone(), *design, args.ts);
+        let mut case = weighed.clone();
+        case.control.design = *design;
         let uncertain = conditions[0].apply(&mut case);
         let simulated = || longest_stabilised(&case, &uncertain, &judging, 5.0 * step_s, until_s);
         margins.push(DelayMargins {
@@ -145,7 +159,7 @@ fn search(
 impl PathBudget {
     fn of(path: &SignalPath, servo_s: f64, margins: &[DelayMargins]) -> PathBudget {
         let total_s = path.total_s() + servo_s;
-        let tolerant = |longest: fn(&DelayMargins) -> Option<Longest>| {
+        let tolerant = |longest: fn(&DelayMargins) -> Option<Longest>| -> Vec<&'static str> {
             let tolerates =
                 |own: &&DelayMargins| longest(own).is_some_and(|l| l.tolerates(total_s));
             let own = margins.iter().filter(tolerates);
@@ -158,7 +172,10 @@ impl PathBudget {
             servo_s,
             total_s,
             stable: tolerant(|own| Some(own.compensated)),
-            stabilised: tolerant(|own| own.stabilised),
+            stabilised: margins
+                .iter()
+                .any(|own| own.stabilised.is_some())
+                .then(|| tolerant(|own| own.stabilised)),
         }
     }
 
@@ -188,9 +205,10 @@ fn text(margins: &[DelayMargins], paths: &[PathBudget], args: &DelaysArgs) -> St
         }),
         (
             "stabilised, compensated",
-            &|path| match path.stabilised.len() {
-                0 => "none".into(),
-                _ => path.stabilised.join(", "),
+            &|path| match path.stabilised.as_deref() {
+                None => "not simulated".into(),
+                Some([]) => "none".into(),
+                Some(stabilised) => stabilised.join(", "),
             },
         ),
     ];

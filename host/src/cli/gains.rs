@@ -21,9 +21,11 @@
 //! script for MATLAB and Octave.
 
 use super::weight_arg::{WeightArg, weight};
-use super::{ExitStatus, Talk};
+use super::{ExitStatus, Talk, input};
 use handstand::model::Model;
-use handstand::report::{gains_json, margins_text, tuned_text, verification_text, with_margins};
+use handstand::report::{
+    GainsReport, gains_json, gains_page, margins_text, tuned_text, verification_text, with_margins,
+};
 use handstand::study::{TUNING_STEPS, Tuned, left_out, tune, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{Design, DesignError, LoopFigures, Request};
@@ -34,7 +36,7 @@ use std::path::{Path, PathBuf};
 mod request;
 
 pub(super) use request::requested;
-use request::{Pose, pose};
+use request::{Pose, SpeedsArg, pose};
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
@@ -73,9 +75,12 @@ pub struct GainsArgs {
     /// Add a Kalman filter for rounded angles and a gyro on the first link
     #[arg(long)]
     lqg: bool,
-    /// Step of the measured angles, rad [default: 300 degrees / 1024]
-    #[arg(long, value_name = "RAD", requires = "lqg")]
+    /// Step of the measured angles, rad [default: the model's; with --lqg 300 degrees / 1024]
+    #[arg(long, value_name = "RAD", value_parser = input::positive, conflicts_with = "continuous")]
     position_step: Option<f64>,
+    /// Speeds that the simulated law is given
+    #[arg(long, value_enum, default_value = "true", conflicts_with_all = ["lqg", "continuous"])]
+    speeds: SpeedsArg,
     /// Step of the gyro, rad/s [default: 10 degrees per second]
     #[arg(long, value_name = "RAD_S", requires = "lqg")]
     gyro_step: Option<f64>,
@@ -111,6 +116,9 @@ pub struct GainsArgs {
     /// Write plant, weights and gains for other programs: .json or .m
     #[arg(long, value_name = "FILE", value_parser = state_space)]
     state_space: Option<PathBuf>,
+    /// Write a page with pictures: responses, margins, poles, region
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
     /// Replace files that exist
     #[arg(long)]
     force: bool,
@@ -167,6 +175,17 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
         )
     })?;
     write(args, &design, &made, &data, talk)?;
+    if let Some(file) = &args.report {
+        let page = gains_page(&GainsReport {
+            model: &whole,
+            request: &request,
+            design: &design,
+            figures: figures.as_ref(),
+            verified: &verified,
+            made: &made,
+        })?;
+        talk.write(file, &page, args.force)?;
+    }
     Ok(ExitStatus::answer(verified.stabilised))
 }
 
@@ -217,6 +236,8 @@ impl GainsArgs {
             (!self.without.is_empty(), "--without"),
             (self.continuous, "--continuous"),
             (self.lqg, "--lqg"),
+            (self.position_step.is_some(), "--position-step"),
+            (self.speeds != SpeedsArg::True, "--speeds"),
             (self.range.is_some(), "--range"),
             (self.limit.is_some(), "--limit"),
             (self.state_step.is_some(), "--state-step"),
@@ -226,6 +247,7 @@ impl GainsArgs {
             (self.name != export::C_NAME, "--name"),
             (self.csv.is_some(), "--csv"),
             (self.state_space.is_some(), "--state-space"),
+            (self.report.is_some(), "--report"),
         ];
         let mut names = given.into_iter().filter(|(given, _)| *given);
         names.next().map(|(_, name)| name)

@@ -25,6 +25,7 @@ mod excite;
 mod fit;
 mod flash;
 mod gains;
+mod gains_choice;
 mod help;
 mod identify;
 mod import;

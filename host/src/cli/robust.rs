@@ -23,7 +23,7 @@ use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::study::{Case, MassErrors, radii, unstable_share};
 use handstand::synth::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
-use handstand::synth::{dlqr, upright, zoh};
+use handstand::synth::{Weight, dlqr, upright, zoh};
 use handstand::{Error, Model, Result};
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -111,8 +111,9 @@ fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobus
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;
     let sampled = zoh(&nominal.plant, args.ts, nominal.delay_s)?;
     let regulator = |q: f64| {
+        let q = Weight::Scalar(q);
         let own = nominal.clone();
-        let (q, r) = DesignModel { q, ..own }.weights();
+        let (q, r) = DesignModel { q, ..own }.weights()?;
         Ok::<_, Error>(dlqr(&sampled, &q, &r)?.k)
     };
     let multi = MultiModel {

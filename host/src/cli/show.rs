@@ -75,3 +75,12 @@ pub fn known(known: &IntervalEstimate) -> String {
 pub fn or_dash<V>(value: Option<V>, text: impl Fn(V) -> String) -> String {
     value.map_or("–".to_string(), text)
 }
+
+/// That friction held so many runs, if it did.
+pub fn held(runs: usize) -> Option<String> {
+    (runs > 0).then(|| {
+        format!(
+            "{runs} runs stay without any command, held by friction: they do not count as stabilised."
+        )
+    })
+}

@@ -206,6 +206,13 @@ impl Model {
             .collect()
     }
 
+    /// The coarsest step of its measured angles, rad; 0 where the log declares none.
+    pub fn position_step_rad(&self) -> f64 {
+        let joints = self.log.joints.iter();
+        let steps = joints.filter_map(|joint| joint.position.as_ref()?.resolution());
+        steps.fold(0.0, f64::max)
+    }
+
     /// Whether any joint slides.
     pub fn slides(&self) -> bool {
         self.joints.iter().any(|joint| joint.slide.is_some())

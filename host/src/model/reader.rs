@@ -196,6 +196,19 @@ impl<'a> Table<'a> {
         texts.collect::<Result<_>>().map(Some)
     }
 
+    /// The numbers of the list under `key`, row by row: a list of numbers, or of such lists.
+    pub fn rows(&self, key: &str) -> Result<Option<Vec<Vec<f64>>>> {
+        let one = |value: &Value| value.as_float().or(value.as_integer().map(|it| it as f64));
+        let numbers =
+            |value: &Value| -> Option<Vec<f64>> { value.as_array()?.iter().map(one).collect() };
+        let rows = |item: &Item| {
+            let value = item.as_value()?;
+            let row = numbers(value).map(|row| vec![row]);
+            row.or_else(|| value.as_array()?.iter().map(numbers).collect())
+        };
+        self.get(key, "a list of numbers, or of such lists", rows)
+    }
+
     /// Whether the item under `key` is a list.
     pub fn is_list(&self, key: &str) -> bool {
         let item = self.items.get(key);

@@ -6,6 +6,7 @@ mod command;
 pub mod effect_page;
 mod failures;
 mod file_names;
+mod gains_page;
 mod headline;
 mod json;
 mod log_check;
@@ -30,6 +31,7 @@ mod waterfall;
 mod words;
 
 pub use file_names::{file_name, file_names};
+pub use gains_page::{GainsReport, gains_page};
 pub use json::{diagnosis_json, gains_json, json};
 pub use log_check::{log_check_json, log_check_text};
 pub use margins::{is_low, margins_json, margins_text, with_margins};

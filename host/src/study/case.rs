@@ -5,10 +5,10 @@ use crate::model::{Angles, Model};
 use crate::sim::closed_loop::{
     Clock, ClosedLoop, Commands, Controller, Drives, Sensor, StabilityCriteria,
 };
-use crate::synth;
 use crate::synth::controllers::{
     ControllerDesign, DesignModel, KnownEquilibrium, LinearLaw, ServoLag, Through,
 };
+use crate::synth::{self, Weight};
 
 /// What is run.
 #[derive(Debug, Clone)]
@@ -38,10 +38,10 @@ pub struct Case {
 pub struct Control {
     /// Which one.
     pub design: &'static dyn ControllerDesign,
-    /// Weight of every state, for the designs that let it be chosen.
-    pub q: f64,
-    /// Weight of every torque.
-    pub r: f64,
+    /// Weight of the states, for the designs that let it be chosen.
+    pub q: Weight,
+    /// Weight of the torques, likewise.
+    pub r: Weight,
     /// Word length of the law, 8 to 32 bits; 0 computes in floating point.
     pub word_bits: u32,
     /// Whether it is given the angles at which the robot balances: the angle compensation.
@@ -73,8 +73,8 @@ impl Case {
             servo: None,
             control: Control {
                 design,
-                q: 100.0,
-                r: 1.0,
+                q: Weight::Scalar(100.0),
+                r: Weight::Scalar(1.0),
                 word_bits: 0,
                 known_equilibrium: false,
                 drives: Drives::IDEAL,
@@ -95,8 +95,8 @@ impl Case {
         let own = DesignModel::new(&self.nominal, &pose_rad, period_s)?;
         let sensor = control.sensor;
         Ok(DesignModel {
-            q: control.q,
-            r: control.r,
+            q: control.q.clone(),
+            r: control.r.clone(),
             word_bits: control.word_bits,
             position_step_rad: sensor.position_resolution_rad,
             gyro_step_rad_s: sensor.gyro.map_or(0.0, |gyro| gyro.resolution_rad_s),

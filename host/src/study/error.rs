@@ -23,6 +23,8 @@ pub enum StudyError {
         bounds: (f64, f64),
         unit: &'static str,
     },
+    #[error("`{0}` is no square matrix")]
+    NotSquare(&'static str),
     #[error("`{0}` is no shard: write `2/5` for the second of five")]
     NoShard(String),
 
@@ -70,6 +72,10 @@ impl Reason for StudyError {
             } => {
                 let remedy = format!("give levels from {low} to {high} {unit}");
                 remedy.trim_end().to_string().into()
+            }
+            StudyError::NotSquare(_) => {
+                "give a number, a diagonal such as [100, 100, 1, 1], or as many rows as columns"
+                    .into()
             }
             StudyError::NoShard(_) => "the first of five is `1/5`, the last `5/5`".into(),
             StudyError::NoJournal => {

@@ -1,11 +1,12 @@
 //! A case in figures: runs of robots drawn around it.
 
 use super::case::{Case, Designed};
+use super::held::run_unheld;
 use super::quantity::Uncertain;
 use super::summary::share_interval;
 use crate::error::Result;
+use crate::sim::closed_loop::stream;
 use crate::sim::closed_loop::{ClosedLoop, Controller, InitialState, Job, Outcome};
-use crate::sim::closed_loop::{run_jobs, stream};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -63,7 +64,8 @@ impl Drawn {
     }
 }
 
-/// Runs robots drawn around a case, on this thread, several at once; outcomes in their order.
+/// Runs robots drawn around a case, on this thread, several at once; outcomes in their order. Those
+/// that friction holds do not count as stabilised.
 pub(super) fn run_drawn(
     drawn: &[Drawn],
     designed: &Designed,
@@ -75,14 +77,15 @@ pub(super) fn run_drawn(
         .map(|drawn| drawn.case.controller(designed, &drawn.closed))
         .collect();
     let jobs = drawn.iter().zip(&controllers).enumerate();
-    run_jobs(jobs.map(|(index, (drawn, controller))| Job {
+    let jobs = jobs.map(|(index, (drawn, controller))| Job {
         closed: &drawn.closed,
         controller: &**controller,
         start: drawn.start.clone(),
         seconds: judging.seconds,
         // Noise during the run is apart from what made the robot.
         rng: stream(!judging.seed, (first + index) as u64),
-    }))
+    });
+    run_unheld(jobs.collect())
 }
 
 /// Outcomes of all runs, on all cores; `done` is called after each.
@@ -116,7 +119,9 @@ pub struct Figures {
     pub runs: usize,
     /// Runs that were stabilised.
     pub stabilised: usize,
-    /// Their share, and the ends of its 95 % interval.
+    /// Runs that stayed as well without any command, held by friction: not among those.
+    pub held: usize,
+    /// Share of the stabilised, and the ends of its 95 % interval.
     pub stabilised_share: f64,
     /// Lower end.
     pub stabilised_low: f64,
@@ -169,6 +174,7 @@ impl Figures {
         Figures {
             runs: outcomes.len(),
             stabilised: stabilised.len(),
+            held: outcomes.iter().filter(|o| o.held).count(),
             stabilised_share: share(stabilised.len()),
             stabilised_low,
             stabilised_high,

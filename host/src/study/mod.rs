@@ -11,10 +11,13 @@ mod case;
 mod conditions;
 mod ellipsoid;
 mod error;
+mod held;
 mod journal;
 mod judge;
+mod lasting;
 mod latency;
 mod longest_delay;
+mod manner;
 mod mass_errors;
 mod merge;
 mod monte_carlo;
@@ -24,11 +27,13 @@ mod plot;
 mod quantities;
 mod quantity;
 mod region;
+mod region_map;
 mod response;
 mod shard;
 mod summary;
 mod sweep;
 mod tune;
+mod verified_loop;
 mod verify;
 
 #[cfg(test)]
@@ -40,8 +45,10 @@ pub use ellipsoid::Ellipsoid;
 pub use error::StudyError;
 pub use journal::{Header, Journal};
 pub use judge::{Figures, Judging, STABILISED_SHARE, judge, outcomes};
+pub use lasting::Lasting;
 pub use latency::{SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath};
 pub use longest_delay::{Longest, longest_linear, longest_stabilised};
+pub use manner::{Manner, can_stick};
 pub use mass_errors::{MassErrors, radii, unstable_share};
 pub use merge::{Merged, Missing, merge};
 pub use monte_carlo::{CHUNK, chunk_rows, fill};
@@ -53,9 +60,13 @@ pub use quantity::{
 };
 pub(crate) use region::bisect;
 pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
-pub use response::{LoopResponse, response};
+pub use region_map::{MappedStart, region_map};
+pub use response::{LoopResponse, response, step_response};
 pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
 pub use tune::{TUNING_STEPS, Tried, Tuned, tune};
-pub use verify::{UndesignedEffect, Verification, Without, left_out, verification_steps, verify};
+pub use verified_loop::VerifiedLaw;
+pub use verify::{
+    LimitedFigure, UndesignedEffect, Verification, Without, left_out, verification_steps, verify,
+};

@@ -1,6 +1,7 @@
 //! A study as a file says it, or the paper's robot.
 
 mod conditions;
+mod weight;
 
 use super::case::Case;
 use super::error::StudyError;
@@ -152,8 +153,12 @@ fn design(table: &Table<'_>, case: &mut Case) -> Result<()> {
     if let Some(design) = table.choice("controller", &choices)? {
         control.design = design;
     }
-    set(table, "q", NOT_NEGATIVE, &mut control.q)?;
-    set(table, "r", POSITIVE, &mut control.r)?;
+    if let Some(q) = weight::weight(table, "q", NOT_NEGATIVE)? {
+        control.q = q;
+    }
+    if let Some(r) = weight::weight(table, "r", POSITIVE)? {
+        control.r = r;
+    }
     let delay = &mut control.drives.delay_periods;
     set(table, "delay_periods", Limits::within(0.0, 20.0), delay)?;
     if let Some(bits) = table.whole("word_bits", Limits::within(8.0, 32.0))? {

@@ -1,15 +1,20 @@
 //! From where a controller stabilises: along a tilt, and from a cube of starts.
 
 use super::case::Case;
+use super::held::run_unheld;
 use super::judge::{Judging, STABILISED_SHARE, judge};
 use super::quantity::Uncertain;
 use crate::error::Result;
-use crate::sim::closed_loop::{ClosedLoop, Controller, InitialState};
+use crate::sim::closed_loop::{ClosedLoop, Controller, InitialState, Job, Outcome, stream};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Step and end of the tilts that are tried, deg.
 const TILT_STEP_DEG: f64 = 0.1;
 const TILT_MOST_DEG: f64 = 20.0;
+
+/// A tilt goes to either side.
+const SIDES: usize = 2;
 
 /// Largest cube that is searched, rad.
 pub(super) const LARGEST_REGION_RAD: f64 = 16.0 * std::f64::consts::PI / 180.0;
@@ -22,7 +27,7 @@ pub const REGION_JUDGEMENTS: usize = HALVINGS + 1;
 
 /// The largest tilt such that from every smaller one, to either side in steps of 0.1 deg up to 20
 /// deg, all joints else straight and everything at rest, the robot is stabilised: where the region
-/// of attraction ends along joint 1. 0 if even 0.1 deg is too much.
+/// of attraction ends along joint 1. 0 if even 0.1 deg is too much, or friction alone holds it.
 pub fn tilt_border_rad(
     closed: &ClosedLoop,
     controller: &dyn Controller,
@@ -44,9 +49,20 @@ pub fn tilt_border_rad(
             .clone()
             .flat_map(|step| [start(tilt(step)), start(-tilt(step))])
             .collect();
-        let outcomes = closed.run_all(controller, &starts, seconds, seed);
+        let jobs = starts.iter().enumerate().map(|(index, start)| Job {
+            closed,
+            controller,
+            start: start.clone(),
+            seconds,
+            rng: stream(seed, index as u64),
+        });
+        let jobs: Vec<Job<'_>> = jobs.collect();
+        let outcomes = jobs
+            .par_chunks(SIDES)
+            .flat_map_iter(|pair| run_unheld(pair.to_vec()));
+        let outcomes: Vec<Outcome> = outcomes.collect();
         let lost = outcomes
-            .chunks(2)
+            .chunks(SIDES)
             .position(|pair| !pair.iter().all(|outcome| outcome.stabilised));
         if let Some(place) = lost {
             return tilt(first + place - 1);

@@ -4,9 +4,8 @@
 //! departure, which also makes their units agree. Around it the weight of all states against the
 //! inputs, and that of the speeds against the angles, go through decades.
 
-use super::judge::Figures;
-use super::region::Region;
-use super::verify::stabilised_from;
+use super::judge::{Figures, STABILISED_SHARE};
+use super::verify::{figures_near, stabilised_from};
 use crate::error::Result;
 use crate::model::Model;
 use crate::synth::{Design, Request, Weight, design_margins};
@@ -21,8 +20,12 @@ const SPEEDS: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
 /// A disk margin of 6 dB: margins beyond it are enough.
 const ENOUGH: f64 = 2.0 / 3.0;
 
-/// How many weights [`tune`] tries.
-pub const TUNING_STEPS: usize = STATES.len() * SPEEDS.len() + 1;
+/// Of how many weights the region is searched, beside the request's own: of those with the largest
+/// margins that hold the robot near its pose.
+const SEARCHED: usize = 6;
+
+/// How many weights [`tune`] tries, and the regions that it searches.
+pub const TUNING_STEPS: usize = STATES.len() * SPEEDS.len() + 1 + SEARCHED;
 
 /// Weights, and what came of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,7 +38,8 @@ pub struct Tried {
     pub disk_margin: f64,
     /// Share stabilised of the starts near the pose.
     pub stabilised_share: f64,
-    /// Largest cube of starts of which 95 % are stabilised, rad.
+    /// Largest cube of starts of which 95 % are stabilised, rad; 0 where it was not searched, since
+    /// others have larger margins.
     pub region_rad: f64,
     /// Whether it may be larger still.
     pub region_open: bool,
@@ -47,7 +51,7 @@ pub struct Tuned {
     /// All that was tried and could be designed, the request's own weights first.
     pub tried: Vec<Tried>,
     /// The chosen one: its place among them. Region and disk margin are not smaller than the first
-    /// one's. Of those, one with a margin of 6 dB is taken if there is any, then the largest
+    /// one's, and its region was searched. Of those, one with a margin of 6 dB is taken if there is any, then the largest
     /// region, then the largest margin.
     pub chosen: usize,
 }
@@ -108,7 +112,13 @@ pub fn tune(
     done: &dyn Fn(),
 ) -> Result<Tuned> {
     let own = Design::of(designed_for, request)?;
-    let mut tried = vec![judged(model, designed_for, request, &own)?];
+    let (figures, region) = stabilised_from(model, &own, request)?;
+    let mut tried = vec![Tried {
+        region_rad: region.spread_rad,
+        region_open: region.open,
+        ..judged(designed_for, &own, &figures)?
+    }];
+    let mut designs = vec![(request.clone(), own.clone())];
     done();
     let (states, inputs) = own.plant.b.shape();
     let state_range = request
@@ -133,15 +143,22 @@ pub fn tune(
             };
             // Gains that overflow a word or lose the loop by rounding are no answer.
             if let Ok(design) = Design::of(designed_for, &request) {
-                let judged = judged(model, designed_for, &request, &design)?;
+                let figures = figures_near(model, &design, &request)?;
                 tried.push(Tried {
                     q: Some(q),
                     r: Some(r),
-                    ..judged
+                    ..judged(designed_for, &design, &figures)?
                 });
+                designs.push((request, design));
             }
             done();
         }
+    }
+    for place in worth_searching(&tried) {
+        let (request, design) = &designs[place];
+        let (_, region) = stabilised_from(model, design, request)?;
+        (tried[place].region_rad, tried[place].region_open) = (region.spread_rad, region.open);
+        done();
     }
     Ok(Tuned {
         chosen: Tuned::choose(&tried),
@@ -149,21 +166,39 @@ pub fn tune(
     })
 }
 
-fn judged(
-    model: &Model,
-    designed_for: &Model,
-    request: &Request,
-    design: &Design,
-) -> Result<Tried> {
+/// Places of those whose region may be chosen, the largest margins first: a margin beyond 6 dB
+/// counts as 6 dB, and those with the most runs stabilised go first among equals.
+fn worth_searching(tried: &[Tried]) -> Vec<usize> {
+    let own = &tried[0];
+    let may_be = |place: &usize| {
+        let one = &tried[*place];
+        let margin = own.region_rad == 0.0 || one.disk_margin >= own.disk_margin;
+        margin && one.stabilised_share >= STABILISED_SHARE
+    };
+    let mut places: Vec<usize> = (1..tried.len()).filter(may_be).collect();
+    let rank = |place: usize| {
+        let one = &tried[place];
+        (one.disk_margin.min(ENOUGH), one.stabilised_share)
+    };
+    places.sort_by(|a, b| {
+        let ((margin_a, share_a), (margin_b, share_b)) = (rank(*a), rank(*b));
+        margin_b
+            .total_cmp(&margin_a)
+            .then(share_b.total_cmp(&share_a))
+    });
+    places.truncate(SEARCHED);
+    places
+}
+
+fn judged(designed_for: &Model, design: &Design, near: &Figures) -> Result<Tried> {
     let margins = design_margins(designed_for, design)?;
-    let (near, region): (Figures, Region) = stabilised_from(model, design, request)?;
     Ok(Tried {
         q: None,
         r: None,
         disk_margin: margins.map_or(0.0, |margins| margins.inputs.disk.alpha),
         stabilised_share: near.stabilised_share,
-        region_rad: region.spread_rad,
-        region_open: region.open,
+        region_rad: 0.0,
+        region_open: false,
     })
 }
 
@@ -193,5 +228,21 @@ mod tests {
         // Own weights that do not hold the robot bind nothing.
         let fallen = Tuned::choose(&[tried(0.5, 0.0), tried(0.1, 0.02), tried(0.9, 0.0)]);
         assert_eq!(fallen, 1);
+    }
+
+    #[test]
+    fn regions_are_searched_where_they_may_be_chosen() {
+        let of = |disk_margin: f64, stabilised_share: f64| Tried {
+            stabilised_share,
+            ..tried(disk_margin, 0.0)
+        };
+        let own = tried(0.3, 0.04);
+        let all = [own, of(0.2, 1.0), of(0.9, 1.0), of(0.5, 1.0), of(0.8, 0.5)];
+        // The margin of one is below the own, another does not hold the robot.
+        assert_eq!(worth_searching(&all), [2, 3]);
+        let fallen = [tried(0.3, 0.0), of(0.2, 1.0)];
+        assert_eq!(worth_searching(&fallen), [1]);
+        let many: Vec<Tried> = (0..30).map(|_| of(0.5, 1.0)).collect();
+        assert_eq!(worth_searching(&many).len(), SEARCHED);
     }
 }

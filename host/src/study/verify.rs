@@ -1,37 +1,57 @@
 //! Verification of a design: the loop simulated with every effect of the model, those that the
 //! design leaves out included.
 
-use super::ellipsoid::{ELLIPSOID_JUDGEMENTS, Ellipsoid, ellipsoid};
+use super::ellipsoid::{ELLIPSOID_JUDGEMENTS, Ellipsoid};
 use super::judge::{Figures, STABILISED_SHARE};
-use super::region::{REGION_JUDGEMENTS, Region, largest};
+use super::lasting::Lasting;
+use super::region::{REGION_JUDGEMENTS, Region};
+use super::verified_loop::{NEAR_RAD, VerifiedLaw, VerifiedLoop};
 use crate::effects::Effect;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
-use crate::sim::closed_loop::{
-    ClosedLoop, Commands, InitialState, StateFeedback, set_delay, stream,
-};
-use crate::synth::{Design, Request, Time, continuous_period_s, rows};
+use crate::sim::closed_loop::Velocity;
+use crate::synth::{Design, Request};
 use serde::Serialize;
 
-/// Runs from random starts behind each figure.
-const RUNS: u64 = 40;
+/// A region counts as larger from this ratio on: 40 runs and a bisection to 0.25 deg tell no less.
+const LARGER: f64 = 1.2;
 
-/// Length of a run, s.
-const SECONDS: f64 = 5.0;
+/// A limit cycle counts as smaller below this share, ..
+const CALMER: f64 = 0.5;
 
-/// Starts of the run whose figures are given, rad: within half a degree.
-const NEAR_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
+/// .. if it is larger than this at all, rad: 0.2 deg.
+const LEAST_SWING_RAD: f64 = 0.2 * std::f64::consts::PI / 180.0;
+
+/// A pole of the plant beyond this grows, 1/s: slides along a level rail have theirs at 0.
+const FALLS_1_S: f64 = 1e-6;
+
+/// A torque counts as smaller below this share.
+const EASIER: f64 = 0.8;
 
 /// What the simulated loop does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verification {
-    /// Whether 95 % of the starts within half a degree of the pose are stabilised.
+    /// The verdict: 95 % of the starts within half a degree of the pose are stabilised, and stay so
+    /// for longer ([`Verification::lasting`]), by the law and not by friction
+    /// ([`Verification::held`]).
     pub stabilised: bool,
+    /// Which law ran.
+    pub law: VerifiedLaw,
+    /// Step of the measured angles, rad; 0 where they are exact.
+    pub position_step_rad: f64,
+    /// Whether its speeds were differences of the measured angles; else they are exact, or a
+    /// filter's.
+    pub differences: bool,
     /// Figures of those starts.
     pub near: Figures,
+    /// Longer runs from the same starts: in which manner the robot stands.
+    pub lasting: Lasting,
     /// Whether 95 % of the same starts stay so with all gains at zero: then friction or the drives'
-    /// own loops hold the robot, and `stabilised` says nothing of the gains.
+    /// own loops hold the robot, and its staying says nothing of the gains.
     pub stays_uncontrolled: bool,
+    /// Whether that is friction's doing, for the linear plant would fall. Such a robot does not
+    /// count as stabilised.
+    pub held: bool,
     /// Figures of those starts with all gains at zero.
     pub uncontrolled: Figures,
     /// Half-width of the largest cube of starting angles of which 95 % are stabilised, rad; 0 if
@@ -57,18 +77,64 @@ pub struct Without {
     pub effect: &'static str,
     /// Its joint, counted from 1; none for the whole rig.
     pub joint: Option<usize>,
+    /// Whether 95 % of the starts within half a degree are stabilised without it.
+    pub stabilised: bool,
+    /// Median limit cycle of those, peak to peak, rad.
+    pub limit_cycle_rad: Option<f64>,
+    /// Median torque of those, root mean square, N m.
+    pub rms_torque_nm: Option<f64>,
     /// Region without it, rad.
     pub region_rad: f64,
     /// Whether it may be larger still.
     pub region_open: bool,
 }
 
+/// A figure of a loop that an effect may limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LimitedFigure {
+    /// The cube of starts.
+    Region,
+    /// The limit cycle.
+    Swing,
+    /// The torque.
+    Torque,
+}
+
 impl Verification {
-    /// The effect that limits the loop: the one without which the region grows most, if it grows.
-    pub fn limiting(&self) -> Option<&Without> {
-        let grows = |without: &&Without| without.region_rad > self.region_rad;
-        let without = self.without.iter().filter(grows);
-        without.max_by(|a, b| a.region_rad.total_cmp(&b.region_rad))
+    /// The effect that limits a figure with these gains: the one that lifts it most when it, and it
+    /// alone, is taken out. None where none does: then there are several, or none at all.
+    pub fn limiting(&self, figure: LimitedFigure) -> Option<&Without> {
+        let lifts = self.without.iter().filter_map(|without| {
+            let ratio = self.lift(figure, without)?;
+            Some((ratio, without))
+        });
+        let most = lifts.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        most.map(|(_, without)| without)
+    }
+
+    /// By which factor a figure is better without an effect; none if that is not significant.
+    fn lift(&self, figure: LimitedFigure, without: &Without) -> Option<f64> {
+        let both = self.near.stabilised_share >= STABILISED_SHARE && without.stabilised;
+        let smaller = |with: Option<f64>, less: Option<f64>, share: f64, least: f64| {
+            let (with, less) = (with?, less?);
+            (both && with >= least && less < share * with)
+                .then(|| with / less.max(f64::MIN_POSITIVE))
+        };
+        match figure {
+            LimitedFigure::Region => {
+                let lifted = without.region_rad >= LARGER * self.region_rad
+                    && without.region_rad > self.region_rad;
+                lifted.then(|| without.region_rad / self.region_rad.max(f64::MIN_POSITIVE))
+            }
+            LimitedFigure::Swing => {
+                let near = self.near.limit_cycle_rad;
+                smaller(near, without.limit_cycle_rad, CALMER, LEAST_SWING_RAD)
+            }
+            LimitedFigure::Torque => {
+                let near = self.near.rms_torque_nm;
+                smaller(near, without.rms_torque_nm, EASIER, 0.0)
+            }
+        }
     }
 }
 
@@ -108,10 +174,11 @@ pub fn verification_steps(left_out: &[UndesignedEffect]) -> usize {
         count @ 0..2 => 1 + count,
         count => 2 + count,
     };
-    2 + regions * REGION_JUDGEMENTS + ELLIPSOID_JUDGEMENTS
+    3 + left_out.len() + regions * REGION_JUDGEMENTS + ELLIPSOID_JUDGEMENTS
 }
 
-/// Simulates the loop of a design from random starts around its pose, the same every time. The
+/// Simulates the loop of a design from random starts around its pose, the same every time: the law
+/// that is exported, bit for bit, on what the sensors tell it; with `--lqg` gains and filter. The
 /// plant is `model` with all its effects. `done` is called after each of up to
 /// [`verification_steps`].
 ///
@@ -124,29 +191,17 @@ pub fn verify(
     left_out: &[UndesignedEffect],
     done: &dyn Fn(),
 ) -> Result<Verification> {
-    let tested = Tested {
-        model,
-        design,
-        request,
-        done,
-    };
+    let tested = VerifiedLoop::new(model, design, request, done);
     let closed = tested.closed_loop(&[])?;
-    let gains = rows(&design.gains.k);
-    let near = tested.figures(&closed, &gains, NEAR_RAD);
-    let none: Vec<Vec<f64>> = gains.iter().map(|row| vec![0.0; row.len()]).collect();
-    let uncontrolled = tested.figures(&closed, &none, NEAR_RAD);
+    let near = tested.figures(&closed, tested.law(), NEAR_RAD);
+    let uncontrolled = tested.figures(&closed, &tested.no_law(), NEAR_RAD);
+    let lasting = tested.lasting(&closed);
     let region = tested.region(&[])?;
-    let ellipsoid = tested.ellipsoid(&closed, &gains)?;
-    let mut without = Vec::new();
-    for one in left_out {
-        let region = tested.region(&[*one])?;
-        without.push(Without {
-            effect: one.effect.info().id,
-            joint: one.joint.map(|joint| joint + 1),
-            region_rad: region.spread_rad,
-            region_open: region.open,
-        });
-    }
+    let ellipsoid = tested.ellipsoid(&closed)?;
+    let without: Vec<Without> = left_out
+        .iter()
+        .map(|one| loop_without(&tested, one))
+        .collect::<Result<_>>()?;
     let as_designed = match without.as_slice() {
         [] => region,
         [one] => Region {
@@ -155,10 +210,19 @@ pub fn verify(
         },
         _ => tested.region(left_out)?,
     };
+    let stays_uncontrolled = uncontrolled.stabilised_share >= STABILISED_SHARE;
+    let falls_by_itself = design.poles.iter().any(|pole| pole.re > FALLS_1_S);
+    let held = stays_uncontrolled && falls_by_itself;
+    let stays = near.stabilised_share >= STABILISED_SHARE && lasting.is_stable();
     Ok(Verification {
-        stabilised: near.stabilised_share >= STABILISED_SHARE,
+        stabilised: stays && !held,
+        law: VerifiedLaw::of(design),
+        position_step_rad: closed.sensor.position_resolution_rad,
+        differences: closed.sensor.velocity == Velocity::Difference,
         near,
-        stays_uncontrolled: uncontrolled.stabilised_share >= STABILISED_SHARE,
+        lasting,
+        stays_uncontrolled,
+        held,
         uncontrolled,
         region_rad: region.spread_rad,
         region_open: region.open,
@@ -167,6 +231,32 @@ pub fn verify(
         region_as_designed_open: as_designed.open,
         without,
     })
+}
+
+/// The loop without one effect.
+fn loop_without(tested: &VerifiedLoop<'_>, one: &UndesignedEffect) -> Result<Without> {
+    let closed = tested.closed_loop(&[*one])?;
+    let near = tested.figures(&closed, tested.law(), NEAR_RAD);
+    let region = tested.region(&[*one])?;
+    Ok(Without {
+        effect: one.effect.info().id,
+        joint: one.joint.map(|joint| joint + 1),
+        stabilised: near.stabilised_share >= STABILISED_SHARE,
+        limit_cycle_rad: near.limit_cycle_rad,
+        rms_torque_nm: near.rms_torque_nm,
+        region_rad: region.spread_rad,
+        region_open: region.open,
+    })
+}
+
+/// Figures of the starts near the pose.
+///
+/// # Errors
+/// As [`verify`].
+pub(super) fn figures_near(model: &Model, design: &Design, request: &Request) -> Result<Figures> {
+    let tested = VerifiedLoop::new(model, design, request, &|| ());
+    let closed = tested.closed_loop(&[])?;
+    Ok(tested.figures(&closed, tested.law(), NEAR_RAD))
 }
 
 /// Figures of the starts near the pose, and the region, empty if those are not stabilised.
@@ -178,14 +268,9 @@ pub(super) fn stabilised_from(
     design: &Design,
     request: &Request,
 ) -> Result<(Figures, Region)> {
-    let tested = Tested {
-        model,
-        design,
-        request,
-        done: &|| (),
-    };
+    let tested = VerifiedLoop::new(model, design, request, &|| ());
     let closed = tested.closed_loop(&[])?;
-    let near = tested.figures(&closed, &rows(&design.gains.k), NEAR_RAD);
+    let near = tested.figures(&closed, tested.law(), NEAR_RAD);
     let region = if near.stabilised_share >= STABILISED_SHARE {
         tested.region(&[])?
     } else {
@@ -195,83 +280,4 @@ pub(super) fn stabilised_from(
         }
     };
     Ok((near, region))
-}
-
-struct Tested<'a> {
-    model: &'a Model,
-    design: &'a Design,
-    request: &'a Request,
-    done: &'a dyn Fn(),
-}
-
-impl Tested<'_> {
-    /// The loop of the model without these effects; gears among them are rigid, not gone, as the
-    /// design has them.
-    fn closed_loop(&self, without: &[UndesignedEffect]) -> Result<ClosedLoop> {
-        let mut model = self.model.clone();
-        let is = |e: &EffectInstance, one: &UndesignedEffect| {
-            one.effect == e.effect && one.joint == e.joint
-        };
-        let stays = |e: &EffectInstance| !without.iter().any(|one| is(e, one));
-        let (kept, gone): (Vec<_>, Vec<_>) = model.effects.into_iter().partition(stays);
-        model.effects = kept;
-        model.effects.extend(gone.iter().filter_map(|e| e.rigid()));
-        closed_loop(model, self.design, self.request)
-    }
-
-    /// With these gains, from random starts within a spread.
-    fn figures(&self, closed: &ClosedLoop, gains: &[Vec<f64>], spread_rad: f64) -> Figures {
-        let (joints, u0) = (self.model.link_count(), &self.design.u0);
-        let controller = StateFeedback::new(joints, gains.to_vec()).feeding(u0);
-        let start = |run| InitialState {
-            command: u0.clone(),
-            ..InitialState::random(joints, spread_rad, &mut stream(1, run))
-        };
-        let starts: Vec<InitialState> = (0..RUNS).map(start).collect();
-        let figures = Figures::of(&closed.run_all(&controller, &starts, SECONDS, 1));
-        (self.done)();
-        figures
-    }
-
-    fn ellipsoid(&self, closed: &ClosedLoop, gains: &[Vec<f64>]) -> Result<Option<Ellipsoid>> {
-        let u0 = &self.design.u0;
-        let controller = StateFeedback::new(self.model.link_count(), gains.to_vec()).feeding(u0);
-        ellipsoid(self.model, self.design, |starts| {
-            let starts = starts.iter().cloned().map(|start| InitialState {
-                command: u0.clone(),
-                ..start
-            });
-            let starts: Vec<InitialState> = starts.collect();
-            let outcomes = closed.run_all(&controller, &starts, SECONDS, 1);
-            (self.done)();
-            Ok(outcomes)
-        })
-    }
-
-    fn region(&self, without: &[UndesignedEffect]) -> Result<Region> {
-        let closed = self.closed_loop(without)?;
-        let gains = rows(&self.design.gains.k);
-        largest(|spread_rad| {
-            let figures = self.figures(&closed, &gains, spread_rad);
-            Ok(figures.stabilised_share >= STABILISED_SHARE)
-        })
-    }
-}
-
-/// The loop of `model` at the request's pose and period, with its delay.
-pub(super) fn closed_loop(
-    mut model: Model,
-    design: &Design,
-    request: &Request,
-) -> Result<ClosedLoop> {
-    let period_s = match request.time {
-        Time::Continuous => continuous_period_s(&design.gains.poles),
-        Time::Sampled { ts_s, delay_s } => {
-            if let Some(delay_s) = delay_s {
-                set_delay(&mut model, delay_s);
-            }
-            ts_s
-        }
-    };
-    ClosedLoop::new(&model, &request.pose_rad, Commands::Own, period_s)
 }

@@ -1,8 +1,8 @@
 //! Everything that follows from a model and weights, as one value; `export` writes it in many ways.
 
 use super::controllability::{Controllability, controllability, observability};
-use super::eigen::poles;
-use super::error::DesignError;
+use super::eigen::{largest, poles};
+use super::error::{DesignError, MOST_GROWTH};
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
@@ -108,7 +108,9 @@ impl Design {
                 let all = sampled.a.nrows();
                 let size = request.q.size().filter(|size| *size == all).unwrap_or(n);
                 let q = request.q.matrix("Q", size, "states")?;
-                (dlqr(&sampled, &q, &r)?, Some((sampled, delay_s)), q)
+                let gains = dlqr(&sampled, &q, &r);
+                let gains = gains.map_err(|error| by_sampling(error, &plant, ts_s))?;
+                (gains, Some((sampled, delay_s)), q)
             }
         };
         let driven = model.driven_joints();
@@ -223,6 +225,25 @@ impl Design {
             estimator,
             compensator,
         })
+    }
+}
+
+/// A mode that no input reaches is the sampling time's doing where the inputs reach every mode of
+/// the plant in continuous time.
+fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64) -> DesignError {
+    match error {
+        DesignError::Uncontrollable { mode, .. }
+            if mode.mode.pole.norm() <= MOST_GROWTH
+                && controllability(&plant.a, &plant.b).is_ok_and(|it| it.is_full()) =>
+        {
+            let fastest = poles(&plant.a).map_or(0.0, |poles| largest(&poles));
+            DesignError::LostBySampling {
+                mode,
+                ts_s,
+                faster: fastest * ts_s > 1.0,
+            }
+        }
+        error => error,
     }
 }
 

@@ -108,6 +108,15 @@ pub enum DesignError {
     Eigenvalues,
     #[error("{mode}: {}", role.uncontrollable().0)]
     Uncontrollable { mode: PlantMode, role: RiccatiRole },
+    #[error(
+        "{mode}: sampled every {ts_s} s no input reaches it, though in continuous time they reach \
+         every mode"
+    )]
+    LostBySampling {
+        mode: PlantMode,
+        ts_s: f64,
+        faster: bool,
+    },
     #[error("{mode}: {}", role.unweighted().0)]
     Unweighted { mode: PlantMode, role: RiccatiRole },
     #[error(
@@ -158,7 +167,7 @@ pub enum DesignError {
 }
 
 /// A plant that grows by more within a sample is sampled too slowly, not too fast.
-const MOST_GROWTH: f64 = 10.0;
+pub(super) const MOST_GROWTH: f64 = 10.0;
 
 /// A mode of a plant that a Riccati equation cannot move.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -121,6 +121,43 @@ mod tests {
         }
     }
 
+    /// An acrobot with its elbow driven: torques that cost next to nothing.
+    #[test]
+    fn cheap_inputs_have_gains() {
+        let joint = |drive: &str| format!("\n[[joint]]\ndrive = \"{drive}\"\n");
+        let link =
+            "\n[[link]]\nlength_m = 0.3\ncom_m = 0.15\nmass_kg = 0.4\ninertia_kg_m2 = 0.003\n";
+        let text = format!(
+            "[rig]\nname = \"acrobot\"\nangle_zero = \"upright\"\nangles = \"relative\"\n\
+             step_s = 0.001\n{link}{link}{}{}\n[log]\ntime = {{ column = \"t\", unit = \"s\" }}\n\n\
+             [[log.joint]]\nposition = {{ column = \"q1\", unit = \"rad\" }}\n\n[[log.joint]]\n\
+             position = {{ column = \"q2\", unit = \"rad\" }}\n\
+             input = {{ column = \"u2\", unit = \"N m\" }}\n",
+            joint("passive"),
+            joint("torque")
+        );
+        let model = Model::parse(&text, Path::new("acrobot.toml")).unwrap();
+        let plant = linearise(&model, &upright(&model)).unwrap().plant;
+        let sampled = zoh(&plant, 0.01, 0.0).unwrap();
+        let gains = |q: f64, r: f64| {
+            let (q, r) = (DMatrix::identity(4, 4) * q, DMatrix::identity(1, 1) * r);
+            dlqr(&sampled, &q, &r).map(|gains| gains.k)
+        };
+        let limit = gains(1.0, 1e-9).unwrap();
+        for cost in [10f64.powf(-10.5), 1e-11, 1e-12, 1e-13] {
+            let k = gains(1.0, cost).unwrap();
+            let closed = &sampled.a - &sampled.b * &k;
+            let radius = poles(&closed)
+                .unwrap()
+                .iter()
+                .map(|pole| pole.norm())
+                .fold(0.0, f64::max);
+            assert!(radius < 1.0, "{cost}: {radius}");
+            // They tend to a limit: that of inputs that cost nothing.
+            assert!((&k - &limit).amax() < 1e-2 * limit.amax(), "{cost}: {k}");
+        }
+    }
+
     #[test]
     fn the_handstand_is_the_paper_s() {
         let plant = handstand();

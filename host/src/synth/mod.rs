@@ -47,14 +47,15 @@ pub use gains::{Gains, continuous_period_s, dlqr, lqr};
 pub use linearise::{Linearisation, linearise};
 pub use loop_figures::LoopFigures;
 pub use margins::{
-    DesignMargins, DiskMargin, LoopMargin, Margins, OpenLoop, Peak, SupplyRange, design_margins,
+    DesignMargins, DiskMargin, LoopMargin, Margins, OpenLoop, Peak, SingularValues, SupplyRange,
+    design_margins, singular_values,
 };
 pub use omitted::{NonSmooth, OmittedEffect};
 pub use operating_point::input_delay_s;
 pub use plan::{PlanReason, StateFeedbackPlan};
 pub use pose::balanced;
 pub use quantise::{Format, Ranges, quantise};
-pub use request::{Request, Sensors, Time};
+pub use request::{Readings, Request, Sensors, Time};
 pub use robust::{multi_model, multi_model_continuation, spectral_radius};
 pub use signal::Signal;
 pub use stiffness::{Stiffness, stiffness};

@@ -3,6 +3,7 @@
 use super::quantise::Format;
 use super::weight::Weight;
 use crate::model::{Model, upright};
+use crate::sim::closed_loop::Velocity;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
@@ -17,6 +18,8 @@ pub struct Request {
     pub time: Time,
     /// Sensors and noise, for an estimator.
     pub sensors: Option<Sensors>,
+    /// What a law without an estimator is given in the simulated loop.
+    pub readings: Readings,
     /// Largest departure of the states, SI; of the plant's own states.
     pub state_range: Weight,
     /// Largest inputs, SI; from the drives where not given.
@@ -39,6 +42,7 @@ impl Request {
                 delay_s: None,
             },
             sensors: None,
+            readings: Readings::default(),
             state_range: Weight::Diagonal([vec![0.5; joints], vec![10.0; joints]].concat()),
             input_range: None,
             format: Format {
@@ -62,6 +66,24 @@ pub enum Time {
         /// Delay of the inputs, s.
         delay_s: Option<f64>,
     },
+}
+
+/// How the states of a law without an estimator are measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Readings {
+    /// Step of the angles, rad; without it the coarsest `resolution_rad` of the model's positions.
+    pub position_step_rad: Option<f64>,
+    /// Where the speeds come from.
+    pub speeds: Velocity,
+}
+
+impl Default for Readings {
+    fn default() -> Self {
+        Readings {
+            position_step_rad: None,
+            speeds: Velocity::Direct,
+        }
+    }
 }
 
 /// What is measured: every angle, and the first link's angular velocity by a gyro.

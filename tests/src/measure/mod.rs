@@ -17,6 +17,7 @@ mod refit;
 mod robot_demo;
 mod scatter;
 mod spoiled;
+mod verdicts;
 #[cfg(unix)]
 mod virtual_cm5;
 mod within;
@@ -54,6 +55,8 @@ enum Chore {
     RobotDemo(robot_demo::Args),
     /// Spoil logs in every way, and measure what the check finds
     Spoiled(spoiled::Args),
+    /// Measure whether verdicts on designs agree with other simulations and with `balance`
+    Verdicts(verdicts::Args),
     /// Measure the firmware: cycles, times, losses and frames
     BenchFirmware(bench_firmware::Args),
     /// Measure how soon the lab answers
@@ -82,6 +85,7 @@ impl Chores {
             Chore::Refit(args) => refit::run(args),
             Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),
+            Chore::Verdicts(args) => verdicts::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             Chore::BenchLab(args) => bench_lab::run(args),
             Chore::BenchRead(args) => bench_read::run(args),

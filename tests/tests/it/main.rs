@@ -17,6 +17,7 @@ mod mjcf;
 mod next;
 mod simulators;
 mod spoiled;
+mod verdicts;
 
 /// The program that the workspace's build left beside the tests.
 fn program() -> std::path::PathBuf {

@@ -65,6 +65,8 @@ enum Chore {
     RobotDemo(Words),
     /// Spoil logs in every way, and measure what the check finds
     Spoiled(Words),
+    /// Measure whether verdicts on designs agree with other simulations and with `balance`
+    Verdicts(Words),
     /// Offer the firmware, in simavr or in process, as a serial port
     Virtual(Words),
     /// Measure whether a limited time gives a diagnosis the verdict of the whole search
@@ -105,6 +107,7 @@ fn main() -> ExitCode {
         Chore::Refit(words) => ("refit", words),
         Chore::RobotDemo(words) => ("robot-demo", words),
         Chore::Spoiled(words) => ("spoiled", words),
+        Chore::Verdicts(words) => ("verdicts", words),
         Chore::Virtual(words) => ("virtual", words),
         Chore::Within(words) => ("within", words),
     };

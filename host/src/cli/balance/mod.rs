@@ -10,6 +10,10 @@
 //! $ handstand balance handstand.toml --port sim-cm5:robot=handstand.toml,start=held --yes
 //! ```
 //!
+//! `--dry-run` designs the plan of a model, tries it out from ten starts as `handstand deploy` does,
+//! says whether it holds the robot (exit code 1 where it does not) and reaches no CM-5; `--json`
+//! then prints `fingerprint`, `effects`, `verdict`.
+//!
 //! Step by step: the driven servos get into wheel mode and all of `--ids` return delay 0, which
 //! their EEPROM keeps (read back; `handstand bus restore` brings the old limits back); the servos
 //! are named to the CM-5; it asks, unless `--yes`; after `--countdown` seconds torque comes on.
@@ -90,6 +94,9 @@ pub struct BalanceArgs {
     /// Do not ask
     #[arg(long)]
     yes: bool,
+    /// Try the model's plan out on the simulated robot; reach no CM-5
+    #[arg(long, conflicts_with_all = ["record", "attitude"])]
+    dry_run: bool,
 }
 
 /// Where the attitude comes from.
@@ -106,6 +113,9 @@ enum AttitudeKind {
 /// Sets up, arms, supervises, lets down.
 pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
     let limits = checked(args)?;
+    if args.dry_run {
+        return source::dry_run(args, talk);
+    }
     let given = args
         .plan
         .as_deref()

@@ -1,12 +1,13 @@
 //! Where the plan and the first link's attitude come from.
 
 use super::{AttitudeKind, BalanceArgs};
-use crate::cli::Talk;
-use crate::cli::deploy::uses_table;
+use crate::cli::deploy::{uses_table, verdict};
+use crate::cli::{ExitStatus, Talk};
 use handstand::deploy::balance::{AttitudeLines, AttitudeSource};
 use handstand::deploy::plan_of_file;
 use handstand::{Error, Model, Result};
 use handstand_shared::plan::Plan;
+use serde_json::json;
 use std::path::Path;
 
 /// The plan of a file: read, or designed for a model.
@@ -23,6 +24,34 @@ pub fn plan(args: &BalanceArgs, file: &Path, talk: &Talk) -> Result<Plan> {
     let basis = args.board.basis(&model)?;
     talk.say(&uses_table(&basis.uses));
     basis.plan(&model)
+}
+
+/// Designs the plan of a model and tries it out.
+///
+/// # Errors
+/// No model is given, or one that cannot be designed for.
+pub fn dry_run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
+    let is_model = |file: &&Path| file.extension().is_none_or(|ending| ending != "rs");
+    let Some(file) = args.plan.as_deref().filter(is_model) else {
+        return Err(Error::usage(
+            "--dry-run tries a plan out on the robot of a model, and none is given",
+            "give MODEL.toml",
+        ));
+    };
+    let model = Model::load(file)?;
+    let basis = args.board.basis(&model)?;
+    let plan = basis.plan(&model)?;
+    let verdict = verdict::of(&model, &plan, &basis, talk)?;
+    let data = json!({
+        "fingerprint": format!("{:08X}", plan.fingerprint()),
+        "effects": basis.uses,
+        "verdict": verdict.as_ref(),
+    });
+    talk.result(&data, || {
+        let words = verdict::words(verdict.as_ref(), &plan);
+        format!("{}\n{words}", uses_table(&basis.uses))
+    })?;
+    Ok(ExitStatus::answer(verdict::holds(verdict.as_ref())))
 }
 
 /// Where the attitude comes from.

@@ -47,6 +47,7 @@ pub fn text(
             condition.title
         ));
     }
+    parts.extend(show::held(trials.iter().map(|trial| trial.held).sum()));
     parts.join("\n\n")
 }
 

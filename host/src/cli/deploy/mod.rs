@@ -39,7 +39,7 @@
 pub mod board;
 mod build;
 mod limits;
-mod verdict;
+pub(super) mod verdict;
 
 use super::flash::{Loader, write};
 use super::port::Port;
@@ -218,7 +218,7 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         "designed: fingerprint {fingerprint:08X}, a plan of {} bytes",
         bytes.len()
     ));
-    let verdict = verdict::of(&made, talk)?;
+    let verdict = verdict::of(&made.model, &made.plan, &made.basis, talk)?;
     if let Some(file) = &args.header {
         write_new(file, &plan_file(&plan, &talk.command), args.gains.force())?;
         steps.say(format!("wrote {}", file.display()));

@@ -1,10 +1,10 @@
 //! Whether a plan holds the model's robot.
 
-use super::Planned;
 use crate::cli::Talk;
-use handstand::Result;
+use handstand::deploy::PlanBasis;
 #[cfg(feature = "virtual-cm5")]
 use handstand::deploy::rehearsal::{Rehearsal, Setting};
+use handstand::{Model, Result};
 use handstand_shared::plan::Plan;
 
 /// A program without simulated servos has none.
@@ -16,20 +16,20 @@ pub enum Rehearsal {}
 #[cfg(feature = "virtual-cm5")]
 const SEED: u64 = 1;
 
-/// Tries the plan out.
+/// Tries a plan for `model` out.
 ///
 /// # Errors
 /// A model that is no robot on these servos.
 #[cfg(feature = "virtual-cm5")]
-pub fn of(made: &Planned, talk: &Talk) -> Result<Option<Rehearsal>> {
+pub fn of(model: &Model, plan: &Plan, basis: &PlanBasis, talk: &Talk) -> Result<Option<Rehearsal>> {
     let setting = Setting {
-        lag_s: made.basis.timing.lag_s,
-        supply_v: made.basis.supply_v,
+        lag_s: basis.timing.lag_s,
+        supply_v: basis.supply_v,
         ..Setting::default()
     };
-    let rehearsal = Rehearsal::of(&made.model, &made.plan, &setting, SEED)?;
+    let rehearsal = Rehearsal::of(model, plan, &setting, SEED)?;
     if !rehearsal.holds {
-        talk.say(&rehearsal.words(&made.plan));
+        talk.say(&rehearsal.words(plan));
     }
     Ok(Some(rehearsal))
 }
@@ -39,7 +39,7 @@ pub fn of(made: &Planned, talk: &Talk) -> Result<Option<Rehearsal>> {
 /// # Errors
 /// Never.
 #[cfg(not(feature = "virtual-cm5"))]
-pub fn of(_made: &Planned, talk: &Talk) -> Result<Option<Rehearsal>> {
+pub fn of(_: &Model, _: &Plan, _: &PlanBasis, talk: &Talk) -> Result<Option<Rehearsal>> {
     talk.say("no verdict: this program was built without simulated servos");
     Ok(None)
 }

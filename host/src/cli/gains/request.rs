@@ -5,8 +5,9 @@ use super::super::{Talk, page};
 use super::GainsArgs;
 use handstand::fitting::effect_ids;
 use handstand::model::Model;
+use handstand::sim::closed_loop::Velocity;
 use handstand::synth::export::Provenance;
-use handstand::synth::{Format, Request, Sensors, Time, balanced, upright};
+use handstand::synth::{Format, Readings, Request, Sensors, Time, balanced, upright};
 use handstand::{Error, Result, output};
 use handstand_shared::raw::Position;
 use std::path::Path;
@@ -18,6 +19,24 @@ pub(super) enum Pose {
     Upright,
     /// Angles of the joints, rad.
     Angles(Vec<f64>),
+}
+
+/// What the simulated law takes for speeds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum SpeedsArg {
+    /// The true ones
+    True,
+    /// Differences of the measured angles over the sampling time
+    Difference,
+}
+
+impl SpeedsArg {
+    fn velocity(self) -> Velocity {
+        match self {
+            SpeedsArg::True => Velocity::Direct,
+            SpeedsArg::Difference => Velocity::Difference,
+        }
+    }
 }
 
 /// `--pose`.
@@ -36,7 +55,13 @@ pub(in crate::cli) fn requested(
     args: &GainsArgs,
     talk: &Talk,
 ) -> Result<(Model, Request, Provenance)> {
-    let files = [&args.rust, &args.c, &args.csv, &args.state_space];
+    let files = [
+        &args.rust,
+        &args.c,
+        &args.csv,
+        &args.state_space,
+        &args.report,
+    ];
     for file in files.into_iter().flatten() {
         output::vacant(file, args.force)?;
     }
@@ -118,6 +143,10 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
         r: read(&args.r)?.unwrap_or(standard.r),
         time,
         sensors: args.lqg.then_some(sensors),
+        readings: Readings {
+            position_step_rad: args.position_step,
+            speeds: args.speeds.velocity(),
+        },
         state_range: read(&args.range)?.unwrap_or(standard.state_range),
         input_range: read(&args.limit)?,
         format: Format {

@@ -8,6 +8,7 @@
 //!
 //! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 
+use crate::cli::gains_choice::GainsChoice;
 use crate::cli::{ExitStatus, Talk};
 use handstand::Result;
 use handstand::study::{CHUNK, Header, Journal, Shard, Study, fill};
@@ -31,6 +32,8 @@ pub struct MonteCarloArgs {
     /// Seed, instead of the file's
     #[arg(long)]
     seed: Option<u64>,
+    #[command(flatten)]
+    gains: GainsChoice,
     /// Replace table, summary and plot
     #[arg(long)]
     force: bool,
@@ -43,6 +46,7 @@ pub fn run(args: &MonteCarloArgs, talk: &Talk) -> Result<ExitStatus> {
         study.judging.runs = usize::try_from(runs).unwrap_or(usize::MAX);
     }
     study.judging.seed = args.seed.unwrap_or(study.judging.seed);
+    args.gains.put_into(&mut study.case)?;
     let designed = study.case.designed()?;
     // What would stop every run stops before the first.
     study.case.closed_loop()?;

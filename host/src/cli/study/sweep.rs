@@ -8,7 +8,8 @@
 //! `--json` prints a list of sweeps: `sweep`, `unit`, `levels` (`level`, `label`, `figures`,
 //! `tilt_border_rad`, `refused`); without names, of quantities: `id`, `unit`, `meaning`, `levels`.
 
-use crate::cli::show::{or_dash, table, table_of};
+use crate::cli::gains_choice::GainsChoice;
+use crate::cli::show::{self, or_dash, table, table_of};
 use crate::cli::{ExitStatus, Talk};
 use handstand::output::number::exact;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
@@ -30,8 +31,10 @@ pub struct SweepArgs {
     #[arg(long, value_name = "FILE.toml")]
     study: Option<PathBuf>,
     /// Controller instead of the study's
-    #[arg(long, value_name = "NAME", value_parser = controller)]
+    #[arg(long, value_name = "NAME", value_parser = controller, conflicts_with = "plan")]
     controller: Option<&'static str>,
+    #[command(flatten)]
+    gains: GainsChoice,
     /// Levels instead of the sweep's own
     #[arg(long, value_delimiter = ',', allow_negative_numbers = true)]
     levels: Vec<f64>,
@@ -98,6 +101,7 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(design) = args.controller.and_then(design) {
         study.case.control.design = design;
     }
+    args.gains.put_into(&mut study.case)?;
     if let Some(folder) = &args.output {
         super::write::folder(folder)?;
         for (quantity, _) in &chosen {
@@ -189,7 +193,9 @@ fn shown((quantity, levels): Swept, ran: &Sweep) -> String {
         let why = level.refused.as_ref()?;
         Some(format!("{}: no controller, {why}", level.label))
     });
-    let refused: Vec<String> = refused.collect();
+    let figures = ran.levels.iter().filter_map(|level| level.figures);
+    let held = show::held(figures.map(|figures| figures.held).sum());
+    let refused: Vec<String> = refused.chain(held).collect();
     format!(
         "{}\n{}\n",
         table_of(&ran.levels, columns),

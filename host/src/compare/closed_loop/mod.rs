@@ -63,13 +63,10 @@ fn closed_loop(model: &Model, plan: &StateFeedbackPlan, motion: &Motion) -> Resu
         ));
     }
     let columns = &model.log.joints;
-    let steps = columns
-        .iter()
-        .filter_map(|joint| joint.position.as_ref()?.resolution());
     let logs_speeds = columns.iter().all(|joint| joint.velocity.is_some());
     let mut closed = ClosedLoop::around(plant, period_s(model, plan)?);
     closed.sensor = Sensor {
-        position_resolution_rad: steps.fold(0.0, f64::max),
+        position_resolution_rad: model.position_step_rad(),
         velocity: match logs_speeds {
             true => Velocity::Direct,
             false => Velocity::Difference,

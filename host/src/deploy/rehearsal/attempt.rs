@@ -1,14 +1,13 @@
 //! An attempt to balance a simulated robot with a plan, through the firmware's own logic.
 
 use super::Setting;
-use super::manner::Manner;
 use crate::deploy::balance::{AttitudeSource, BalanceEnd, BalanceOutcome, Balancer};
-use crate::effects::{AtRest, Site};
 use crate::error::{Error, Result};
 use crate::link::virtual_cm5::{
     Cm5Port, SimLink, attitude_sensor_of, set_up_model, spec_with_robot,
 };
 use crate::model::Model;
+use crate::study::{Manner, can_stick};
 use handstand_shared::message::ArmLimits;
 use handstand_shared::plan::Plan;
 use serde::Serialize;
@@ -16,6 +15,8 @@ use std::path::Path;
 
 /// How long the robot shall stand, s.
 pub const STANDS_S: f64 = 10.0;
+/// The last of an attempt that shows in which manner it stands, s.
+const LAST_S: f64 = 5.0;
 /// At the beginning it comes back from where it was let go, s: no sway of its own.
 const SETTLES_S: f64 = 2.0;
 
@@ -95,6 +96,11 @@ impl BalanceAttempt {
         samples: Vec<AttemptSample>,
         outcome: &BalanceOutcome,
     ) -> BalanceAttempt {
+        let angles = |sample: &AttemptSample| {
+            let [shoulder, hip] = sample.joint_rad;
+            (sample.time_s, vec![sample.lean_rad, shoulder, hip])
+        };
+        let angles: Vec<(f64, Vec<f64>)> = samples.iter().map(angles).collect();
         let late = samples.iter().filter(|sample| sample.time_s > SETTLES_S);
         let squares: Vec<f64> = late.map(|sample| sample.lean_rad.powi(2)).collect();
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
@@ -104,25 +110,9 @@ impl BalanceAttempt {
             stands: outcome.end == BalanceEnd::Finished,
             sway_rms_rad: (!squares.is_empty()).then_some(mean.sqrt()),
             manner: (outcome.end == BalanceEnd::Finished)
-                .then(|| Manner::of(&samples, sticks(model))),
+                .then(|| Manner::of(&angles, LAST_S, can_stick(model))),
             end: outcome.words(),
             samples,
         }
     }
-}
-
-/// Whether a joint of this robot can stick: its friction jumps at standstill.
-fn sticks(model: &Model) -> bool {
-    let at_rest = AtRest {
-        angle_rad: 0.0,
-        duty: 0.0,
-        torque_nm: 0.0,
-        full_torque_nm: 1.0,
-    };
-    let mut effects = model.effects.iter();
-    effects.any(|instance| {
-        let effect = instance.effect;
-        let is_friction = effect.info().site == Site::Friction;
-        is_friction && effect.slope(&instance.values, &at_rest).is_none()
-    })
 }

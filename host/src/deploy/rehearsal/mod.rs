@@ -6,13 +6,12 @@
 //! of `handstand balance`, for it is the same program that runs.
 
 mod attempt;
-mod manner;
 
 pub use attempt::{AttemptSample, BalanceAttempt, STANDS_S};
-pub use manner::Manner;
 
 use crate::error::Result;
 use crate::model::Model;
+use crate::study::Manner;
 use handstand_shared::message::Attitude;
 use handstand_shared::plan::{Law, Plan};
 use rand::{Rng as _, SeedableRng as _};

@@ -56,6 +56,9 @@ pub struct Outcome {
     pub fell_s: Option<f64>,
     /// Whether it was stabilised, as [`StabilityCriteria`] define it.
     pub stabilised: bool,
+    /// Whether friction held it: from the same start it stays without any command. Studies find
+    /// that out; such a robot does not count as stabilised.
+    pub held: bool,
     /// Root mean square angle over all joints and samples, rad.
     pub rms_angle_rad: f64,
     /// Root mean square torque over all drives and time, N m: the control effort.
@@ -145,6 +148,7 @@ impl Tally {
         let stable_from_s = (end_s - limits.stable_s).max(end_s / 2.0);
         Outcome {
             stabilised: !fell && self.unstable_s < stable_from_s,
+            held: false,
             fell_s: fell.then_some(end_s),
             rms_angle_rad: (self.squares / self.samples.max(1) as f64).sqrt(),
             rms_torque_nm: if time_s > 0.0 {

@@ -7,7 +7,7 @@ use crate::model::EffectInstance;
 use crate::synth::controllers::{
     DEFAULT, DESIGNS, DesignModel, MASS_ERROR, MultiModel, WEIGHT, design,
 };
-use crate::synth::{Design, Format, Request, Time, Weight, dlqr, upright, zoh};
+use crate::synth::{Design, Format, Readings, Request, Time, Weight, dlqr, upright, zoh};
 use nalgebra::DMatrix;
 use std::path::Path;
 
@@ -135,7 +135,7 @@ fn the_longest_delay_is_the_one_of_the_eigenvalues() {
         longest_linear(design(id).unwrap(), &known, told, 1e-3, 0.03).unwrap()
     };
     let dlqr_longest = longest("dlqr", Some(0.0));
-    let (q, r) = known.weights();
+    let (q, r) = known.weights().unwrap();
     let k = dlqr(&zoh(&known.plant, 0.01, 0.0).unwrap(), &q, &r)
         .unwrap()
         .k;
@@ -223,6 +223,7 @@ fn verified(effects: &[(&str, usize, &[f64])]) -> Verification {
             delay_s: None,
         },
         sensors: None,
+        readings: Readings::default(),
         state_range: Weight::Diagonal(vec![0.5, 0.5, 0.5, 10.0, 10.0, 10.0]),
         input_range: None,
         format: Format::default(),
@@ -237,7 +238,7 @@ fn verified(effects: &[(&str, usize, &[f64])]) -> Verification {
 #[test]
 fn what_limits_a_design_is_named() {
     let verified = verified(&[("coulomb", 0, &[1e-4]), ("dead_zone", 1, &[0.2, 0.0])]);
-    let limiting = verified.limiting().unwrap();
+    let limiting = verified.limiting(LimitedFigure::Region).unwrap();
     assert_eq!(
         (limiting.effect, limiting.joint),
         ("dead_zone", Some(2)),
@@ -258,7 +259,8 @@ fn a_robot_that_friction_holds_is_said_to_stay_without_control() {
         ("coulomb", 1, &[2.0]),
         ("coulomb", 2, &[2.0]),
     ]);
-    assert!(stuck.stabilised && stuck.stays_uncontrolled, "{stuck:?}");
+    assert!(stuck.stays_uncontrolled && stuck.held, "{stuck:?}");
+    assert!(!stuck.stabilised && stuck.lasting.is_stable(), "{stuck:?}");
     assert_eq!(stuck.uncontrolled.stabilised, stuck.uncontrolled.runs);
     let free = verified(&[("coulomb", 0, &[1e-4])]);
     assert!(!free.stays_uncontrolled, "{free:?}");

@@ -2,6 +2,7 @@ mod controllers;
 
 use super::*;
 use crate::sim::closed_loop::Velocity;
+use crate::synth::Weight;
 use std::path::{Path, PathBuf};
 
 const UNCERTAIN: &str = r#"
@@ -60,7 +61,8 @@ size = 5e-4
     )
     .unwrap();
     let case = &study.case;
-    assert_eq!((case.control.q, case.control.word_bits), (1.0, 16));
+    assert_eq!(case.control.q, Weight::Scalar(1.0));
+    assert_eq!(case.control.word_bits, 16);
     assert_eq!((case.clock.period_s, case.drives.dead_zone), (0.02, 0.07));
     assert_eq!(case.sensor.velocity, Velocity::Direct);
     assert!(case.sensor.gyro.is_some() && case.drives.saturates);
@@ -74,6 +76,8 @@ fn what_a_file_cannot_say_is_refused_with_its_line() {
         ("[runs]\ncuont = 3\n", ":2:1", "unknown key `cuont`"),
         ("[runs]\ncount = 2.5\n", ":2:9", "not whole"),
         ("[design]\nr = 0\n", ":2:5", "impossible"),
+        ("[design]\nq = [[1, 0], [0]]\n", ":2:5", "no square matrix"),
+        ("[design]\nq = [1, \"a\"]\n", ":2:5", "`q` is an array"),
         (
             "[[uncertain]]\nwhat = \"mas\"\nsize = 1\n",
             ":2:8",

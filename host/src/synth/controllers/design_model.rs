@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::model::Model;
 use crate::sim::bare_motors;
 use crate::sim::closed_loop::Drives;
-use crate::synth::{Continuous, OmittedEffect, linearise};
+use crate::synth::{Continuous, OmittedEffect, Weight, linearise};
 use nalgebra::DMatrix;
 
 /// What a controller may be designed with.
@@ -37,10 +37,10 @@ pub struct DesignModel {
     pub gyro_step_rad_s: f64,
     /// Lag of the servos.
     pub servo: Option<ServoLag>,
-    /// Weight of every state.
-    pub q: f64,
-    /// Weight of every torque.
-    pub r: f64,
+    /// Weight of the states.
+    pub q: Weight,
+    /// Weight of the torques.
+    pub r: Weight,
     /// Word length of the law, bits; 0 computes in floating point.
     pub word_bits: u32,
 }
@@ -87,8 +87,8 @@ impl DesignModel {
             position_step_rad: 0.0,
             gyro_step_rad_s: 0.0,
             servo: None,
-            q: 100.0,
-            r: 1.0,
+            q: Weight::Scalar(100.0),
+            r: Weight::Scalar(1.0),
             word_bits: 0,
             omitted: linearised.omitted,
             model,
@@ -116,12 +116,14 @@ impl DesignModel {
         self.plant.b.ncols()
     }
 
-    /// Weights of states and torques, Q = q I and R = r I; the paper's are 100 and 1.
-    pub fn weights(&self) -> (DMatrix<f64>, DMatrix<f64>) {
-        let n = self.plant.a.nrows();
-        (
-            self.q * DMatrix::identity(n, n),
-            self.r * DMatrix::identity(self.drives(), self.drives()),
-        )
+    /// Weights of states and torques; the paper's are Q = 100 I and R = I.
+    ///
+    /// # Errors
+    /// Weights of another size than the plant's.
+    pub fn weights(&self) -> Result<(DMatrix<f64>, DMatrix<f64>)> {
+        Ok((
+            self.q.matrix("Q", self.plant.a.nrows(), "states")?,
+            self.r.matrix("R", self.drives(), "inputs")?,
+        ))
     }
 }

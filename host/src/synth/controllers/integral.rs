@@ -46,7 +46,7 @@ impl ControllerDesign for Integral {
             a,
             ..plant
         };
-        let (q, r) = known.weights();
+        let (q, r) = known.weights()?;
         let mut q = q.resize(n + m, n + m, 0.0);
         for sum in n..n + m {
             q[(sum, sum)] = INTEGRAL_WEIGHT;

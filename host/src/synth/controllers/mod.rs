@@ -6,8 +6,11 @@
 
 mod best;
 mod board_timing;
+mod compensator_law;
 mod dead_zone;
 mod design_model;
+mod fixed_point;
+mod given;
 mod info;
 mod integral;
 mod known_equilibrium;
@@ -25,7 +28,10 @@ mod servo;
 mod sliding;
 
 pub use board_timing::BoardTiming;
+pub use compensator_law::CompensatorLaw;
 pub use design_model::DesignModel;
+pub use fixed_point::FixedPointFeedback;
+pub use given::GivenGains;
 pub use info::{ControllerDesign, ControllerInfo, Speeds};
 pub use known_equilibrium::KnownEquilibrium;
 pub use linear_law::LinearLaw;

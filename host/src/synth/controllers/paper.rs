@@ -63,7 +63,7 @@ impl ControllerDesign for Paper {
 
 /// The paper's gain for this plant.
 pub(super) fn gain(known: &DesignModel) -> Result<DMatrix<f64>> {
-    let (q, r) = known.weights();
+    let (q, r) = known.weights()?;
     Ok(dlqr(&zoh(&known.plant, known.period_s, 0.0)?, &q, &r)?.k)
 }
 

@@ -27,6 +27,31 @@ pub enum ControllerReason {
         /// How late, s.
         delay_s: f64,
     },
+    /// A plan whose pose is not upright, or whose inputs there are not 0.
+    #[error("the plan does not hold the robot upright without torque")]
+    NotUpright,
+    /// A plan for another sampling time.
+    #[error("the plan is for {}, not for every {period_s} s", sampled(*ts_s))]
+    OtherPeriod {
+        /// Its sampling time, s; none of continuous time.
+        ts_s: Option<f64>,
+        /// The study's, s.
+        period_s: f64,
+    },
+    /// A plan for a drive that is not commanded in torque.
+    #[error("joint {joint} is commanded neither in torque nor in duty")]
+    NoTorque {
+        /// From 1.
+        joint: usize,
+    },
+    /// A plan for another robot.
+    #[error("the plan is not for {joints} joints, {drives} of them driven")]
+    OtherRobot {
+        /// Joints of the robot.
+        joints: usize,
+        /// How many of them are driven.
+        drives: usize,
+    },
     /// The plant's state cannot be computed backwards in time.
     #[error("the plant cannot be followed back")]
     Irreversible,
@@ -47,6 +72,17 @@ impl Reason for ControllerReason {
                 )
                 .into();
             }
+            ControllerReason::NotUpright => {
+                "studies hold robots upright: design without --pose, or ask `handstand gains` for \
+                 the verdict"
+            }
+            ControllerReason::OtherPeriod { .. } => {
+                "give the sampling time of the plan, or design for this one"
+            }
+            ControllerReason::NoTorque { .. } => {
+                "studies command torques; ask `handstand gains` for the verdict on this plan"
+            }
+            ControllerReason::OtherRobot { .. } => "give the plan that was made for this robot",
             ControllerReason::Irreversible => "sample faster",
         })
     }
@@ -56,4 +92,9 @@ impl From<ControllerReason> for Error {
     fn from(reason: ControllerReason) -> Error {
         Error::Design(Box::new(reason))
     }
+}
+
+/// A sampling time in words.
+fn sampled(ts_s: Option<f64>) -> String {
+    ts_s.map_or("continuous time".into(), |ts_s| format!("every {ts_s} s"))
 }

@@ -1,10 +1,9 @@
 //! The sampled regulator with the delay in its model, in floating or fixed point.
 
-use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
+use super::{ControllerDesign, ControllerInfo, DesignModel, FixedPointFeedback, Speeds};
 use crate::error::Result;
-use crate::sim::closed_loop::state_feedback::remember;
-use crate::sim::closed_loop::{Controller, Measurement, StateFeedback};
-use crate::synth::{FixedLaw, Format, Ranges, dlqr, quantise, rows, zoh};
+use crate::sim::closed_loop::{Controller, StateFeedback};
+use crate::synth::{Format, Ranges, dlqr, quantise, rows, zoh};
 use nalgebra::DMatrix;
 
 /// DLQR on angles, speeds and past torques.
@@ -33,60 +32,38 @@ impl ControllerDesign for Regulator {
     }
 
     fn build(&self, model: &DesignModel) -> Result<Box<dyn Controller>> {
-        let (q, r) = model.weights();
+        let (q, r) = model.weights()?;
         let k = dlqr(&zoh(&model.plant, model.period_s, model.delay_s)?, &q, &r)?.k;
         if model.word_bits == 0 {
             let law = StateFeedback::new(model.joints(), rows(&k));
             return Ok(Box::new(law));
         }
-        Ok(Box::new(FixedPoint::new(model, &k)?))
+        Ok(Box::new(fixed_point(model, &k)?))
     }
 }
 
 /// What the board computes, bit for bit, if its words have 16 bits.
-#[derive(Debug, Clone)]
-struct FixedPoint {
-    law: FixedLaw,
-    /// Numbers of past torques.
-    past: usize,
-}
-
-impl FixedPoint {
-    fn new(model: &DesignModel, k: &DMatrix<f64>) -> Result<FixedPoint> {
-        let joints = model.joints();
-        let torque_nm = match model.limit_nm.is_finite() {
-            true => model.limit_nm,
-            false => TORQUE_RANGE_NM,
-        };
-        let range = |state: usize| match state {
-            _ if state < joints => ANGLE_RANGE_RAD,
-            _ if state < 2 * joints => SPEED_RANGE_RAD_S,
-            _ => torque_nm,
-        };
-        let ranges = Ranges {
-            state: (0..k.ncols()).map(range).collect(),
-            input: vec![torque_nm; k.nrows()],
-        };
-        let format = Format {
-            bits: model.word_bits,
-            ..Format::default()
-        };
-        let (x0, u0) = (vec![0.0; k.ncols()], vec![0.0; k.nrows()]);
-        Ok(FixedPoint {
-            law: quantise(k, &x0, &u0, &ranges, &format)?,
-            past: k.ncols() - 2 * joints,
-        })
-    }
-}
-
-impl Controller for FixedPoint {
-    fn memory_len(&self) -> usize {
-        self.past
-    }
-
-    fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command_nm: &mut [f64]) {
-        let x = [measured.angle_rad, measured.speed_rad_s, memory].concat();
-        command_nm.copy_from_slice(&self.law.control(&x));
-        remember(memory, command_nm);
-    }
+fn fixed_point(model: &DesignModel, k: &DMatrix<f64>) -> Result<FixedPointFeedback> {
+    let joints = model.joints();
+    let torque_nm = if model.limit_nm.is_finite() {
+        model.limit_nm
+    } else {
+        TORQUE_RANGE_NM
+    };
+    let range = |state: usize| match state {
+        _ if state < joints => ANGLE_RANGE_RAD,
+        _ if state < 2 * joints => SPEED_RANGE_RAD_S,
+        _ => torque_nm,
+    };
+    let ranges = Ranges {
+        state: (0..k.ncols()).map(range).collect(),
+        input: vec![torque_nm; k.nrows()],
+    };
+    let format = Format {
+        bits: model.word_bits,
+        ..Format::default()
+    };
+    let (x0, u0) = (vec![0.0; k.ncols()], vec![0.0; k.nrows()]);
+    let law = quantise(k, &x0, &u0, &ranges, &format)?;
+    Ok(FixedPointFeedback::new(law, &x0, joints))
 }

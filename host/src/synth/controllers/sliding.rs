@@ -129,7 +129,7 @@ impl ControllerDesign for Sliding {
 
     fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         let plant = zoh(&known.plant, known.period_s, 0.0)?;
-        let (q, r) = known.weights();
+        let (q, r) = known.weights()?;
         let surface = Surface::sliding(&plant, &dlqr(&plant, &q, &r)?.riccati)?;
         Ok(Box::new(Direct { surface }))
     }

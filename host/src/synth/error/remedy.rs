@@ -45,6 +45,8 @@ impl Reason for DesignError {
                 )
                 .into();
             }
+            E::LostBySampling { faster: true, .. } => "sample faster",
+            E::LostBySampling { faster: false, .. } => "sample more slowly",
             E::Uncontrollable { role, .. } => role.uncontrollable().1,
             E::Unweighted { role, .. } => role.unweighted().1,
             E::NoSolution { .. } => {
@@ -53,8 +55,8 @@ impl Reason for DesignError {
             E::WordLength(_) => "choose 8 to 32 bits",
             E::Count { of, .. } => return format!("give one per {of}, or one for all").into(),
             E::NotPositive { .. } => "give a number above 0",
-            E::BeyondWord { .. } => "declare a smaller range, a coarser step, or more bits",
-            E::Overflow { .. } => "declare smaller ranges, take a coarser input step, or more bits",
+            E::BeyondWord { .. } => "declare a smaller range, or a coarser step",
+            E::Overflow { .. } => "declare smaller ranges, or take a coarser input step",
             E::UnstableWhenRounded { .. } => {
                 "declare smaller ranges: steps and gains are rounded to what they need"
             }

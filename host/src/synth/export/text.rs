@@ -27,7 +27,8 @@ fn pose_unit(design: &Design) -> String {
 /// Gains, poles, zeros, what fixed point costs.
 pub fn text(design: &Design) -> String {
     let joints = design.plant.a.nrows() / 2;
-    let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v)));
+    // A zero has no sign for people.
+    let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v + 0.0)));
     let mut parts = vec![format!(
         "`{}` at q = [{}]{}, held by u = [{}]",
         design.model,

@@ -17,7 +17,7 @@ mod of_design;
 mod response;
 
 pub use disk::DiskMargin;
-pub use of_design::{DesignMargins, SupplyRange, design_margins};
+pub use of_design::{DesignMargins, SingularValues, SupplyRange, design_margins, singular_values};
 
 use super::eigen::poles;
 use super::error::DesignError;

@@ -1,5 +1,6 @@
 //! The margins of a design: its loop broken at the inputs and, with a filter, at the sensors.
 
+use super::response::{Grid, Matrix, largest_singular_value};
 use super::{Margins, OpenLoop};
 use crate::model::{Drive, Model};
 use crate::synth::eigen::{largest, poles};
@@ -58,32 +59,14 @@ pub fn design_margins(
     design: &Design,
 ) -> Result<Option<DesignMargins>, DesignError> {
     let Some((plant, delay_s)) = &design.sampled else {
-        let open = OpenLoop {
-            a: design.plant.a.clone(),
-            b: design.plant.b.clone(),
-            c: design.gains.k.clone(),
-            ts_s: None,
-        };
-        let inputs = open.margins()?;
+        let inputs = open_at_inputs(design).margins()?;
         return Ok(inputs.map(|inputs| DesignMargins {
             supply: supply(model, inputs.common.gain),
             inputs,
             sensors: None,
         }));
     };
-    let controller = match &design.estimator {
-        Some(estimation) => {
-            let compensator = &estimation.compensator;
-            Controller {
-                a: compensator.a.clone(),
-                b: compensator.b.clone(),
-                c: compensator.c.clone(),
-                d: compensator.d.clone(),
-                outputs: estimation.plant.c.columns(0, plant.plant_states()).into(),
-            }
-        }
-        None => Controller::of_states(plant, &design.gains.k),
-    };
+    let controller = Controller::of_design(design, plant);
     let Some(mut inputs) = controller.at_inputs(plant).margins()? else {
         return Ok(None);
     };
@@ -103,6 +86,54 @@ pub fn design_margins(
         inputs,
         sensors,
     }))
+}
+
+/// The largest singular values of a loop at a frequency.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SingularValues {
+    /// Frequency, rad/s.
+    pub frequency_rad_s: f64,
+    /// Of S = (I + L)^-1.
+    pub sensitivity: f64,
+    /// Of T = L (I + L)^-1.
+    pub complementary: f64,
+}
+
+/// S and T of a design's loop, broken at the inputs, over frequency; none of a loop that is not
+/// stable.
+///
+/// # Errors
+/// Entries that are no numbers.
+pub fn singular_values(design: &Design) -> Result<Option<Vec<SingularValues>>, DesignError> {
+    let open = open_at_inputs(design);
+    if !open.is_stable(1.0)? {
+        return Ok(None);
+    }
+    let grid = Grid::of(&open)?;
+    let of = |(frequency, s): &(f64, Matrix)| {
+        let identity = Matrix::identity(s.nrows(), s.ncols());
+        SingularValues {
+            frequency_rad_s: grid.rad_s(*frequency),
+            sensitivity: largest_singular_value(s),
+            complementary: largest_singular_value(&(identity - s)),
+        }
+    };
+    let mut values: Vec<SingularValues> = grid.points.iter().map(of).collect();
+    values.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
+    Ok(Some(values))
+}
+
+/// The loop of a design, broken at the inputs.
+fn open_at_inputs(design: &Design) -> OpenLoop {
+    match &design.sampled {
+        Some((plant, _)) => Controller::of_design(design, plant).at_inputs(plant),
+        None => OpenLoop {
+            a: design.plant.a.clone(),
+            b: design.plant.b.clone(),
+            c: design.gains.k.clone(),
+            ts_s: None,
+        },
+    }
 }
 
 /// The common gain as supply, where every input is a torque or a duty of one nominal supply.
@@ -144,6 +175,23 @@ fn blocks(rows: &[&[&DMatrix<f64>]]) -> DMatrix<f64> {
 }
 
 impl Controller {
+    /// Gains and filter, or gains on the plant's states.
+    fn of_design(design: &Design, plant: &Discrete) -> Controller {
+        match &design.estimator {
+            Some(estimation) => {
+                let compensator = &estimation.compensator;
+                Controller {
+                    a: compensator.a.clone(),
+                    b: compensator.b.clone(),
+                    c: compensator.c.clone(),
+                    d: compensator.d.clone(),
+                    outputs: estimation.plant.c.columns(0, plant.plant_states()).into(),
+                }
+            }
+            None => Controller::of_states(plant, &design.gains.k),
+        }
+    }
+
     /// u = -K [x; past u]: its states are the inputs that it asked for.
     fn of_states(plant: &Discrete, k: &DMatrix<f64>) -> Controller {
         let (all, own) = (plant.a.nrows(), plant.plant_states());

@@ -3,6 +3,9 @@
 use super::{doubling, newton};
 use nalgebra::DMatrix;
 
+/// Factors of R that are tried where the inputs are too cheap.
+const DEARER: [f64; 4] = [1e2, 1e4, 1e6, 1e8];
+
 /// In which time the plant runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::synth) enum TimeDomain {
@@ -36,8 +39,7 @@ pub(in crate::synth) struct Solution {
 impl Problem<'_> {
     /// The stabilising solution, or `None` if none was found.
     pub fn solve(&self) -> Option<Solution> {
-        let direct = self.doubled(self.q);
-        if let Some(solution) = direct.and_then(|x| newton::refine(self, x)) {
+        if let Some(solution) = self.solve_directly() {
             return Some(solution);
         }
         // Modes that Q does not see are left as they are by doubling, even if they grow. Newton's
@@ -45,7 +47,22 @@ impl Problem<'_> {
         let n = self.a.nrows();
         let size = self.q.amax().max(1e-3 * self.r.amax());
         let seen = self.q + DMatrix::identity(n, n) * size;
-        newton::refine(self, self.doubled(&seen)?)
+        let seen = self.doubled(&seen).and_then(|x| newton::refine(self, x));
+        seen.or_else(|| self.solve_by_dearer_inputs())
+    }
+
+    /// Cheap inputs leave doubling too few digits; gains of dearer ones stabilise as well, which is
+    /// all that Newton's iteration needs.
+    fn solve_by_dearer_inputs(&self) -> Option<Solution> {
+        DEARER.iter().find_map(|factor| {
+            let r = self.r * *factor;
+            let dearer = Problem { r: &r, ..*self };
+            newton::refine(self, dearer.solve_directly()?.x)
+        })
+    }
+
+    fn solve_directly(&self) -> Option<Solution> {
+        newton::refine(self, self.doubled(self.q)?)
     }
 
     fn doubled(&self, q: &DMatrix<f64>) -> Option<DMatrix<f64>> {

@@ -1,10 +1,9 @@
 //! In which manner a robot stands: at rest, leaning, swinging, or hunting by stick-slip.
 
-use super::attempt::{AttemptSample, STANDS_S};
+use crate::effects::{AtRest, Site};
+use crate::model::Model;
 use serde::Serialize;
 
-/// The last of an attempt that is looked at, s: what came before is the way back from the start.
-const LAST_S: f64 = 5.0;
 /// A servo's code is 0.29 deg: a joint that is read within two of them rests, rad.
 const REST_RAD: f64 = 0.0103;
 /// Mean departure of a joint from which a robot at rest leans, rad: 1 deg.
@@ -44,24 +43,25 @@ pub enum Manner {
 }
 
 impl Manner {
-    /// Of an attempt that stood to its end; `sticks` says whether anything in the robot can.
-    pub(super) fn of(samples: &[AttemptSample], sticks: bool) -> Manner {
-        let late = samples.iter().filter(|it| it.time_s > STANDS_S - LAST_S);
-        let late: Vec<(f64, [f64; 3])> = late
-            .map(|it| (it.time_s, [it.lean_rad, it.joint_rad[0], it.joint_rad[1]]))
-            .collect();
+    /// Of a robot that stood to its end: times, s, and the angle of each joint from its pose, rad.
+    /// The last `window_s` count, for what came before is the way back from the start; `sticks`
+    /// says whether anything in the robot can ([`can_stick`]).
+    pub fn of(samples: &[(f64, Vec<f64>)], window_s: f64, sticks: bool) -> Manner {
+        let end_s = samples.last().map_or(0.0, |(time_s, _)| *time_s);
+        let late = samples.partition_point(|(time_s, _)| *time_s <= end_s - window_s);
+        let late = &samples[late..];
         let (mut swing_rad, mut lean_rad, mut liveliest) = (0.0_f64, 0.0_f64, 0);
-        for joint in 0..3 {
+        for joint in 0..late.first().map_or(0, |(_, angles)| angles.len()) {
             let angles = || late.iter().map(|(_, angles)| angles[joint]);
             let low = angles().fold(f64::INFINITY, f64::min);
             let high = angles().fold(f64::NEG_INFINITY, f64::max);
-            let mean = angles().sum::<f64>() / late.len().max(1) as f64;
+            let mean = angles().sum::<f64>() / late.len() as f64;
             if high - low > swing_rad {
                 (swing_rad, liveliest) = (high - low, joint);
             }
             lean_rad = lean_rad.max(mean.abs());
         }
-        let hunts = sticks && still_share(&late, liveliest) > STILL_SHARE;
+        let hunts = sticks && still_share(late, liveliest) > STILL_SHARE;
         match (swing_rad > REST_RAD, hunts, lean_rad > LEAN_RAD) {
             (true, true, _) => Manner::Hunting { swing_rad },
             (true, false, _) => Manner::Swinging { swing_rad },
@@ -99,8 +99,24 @@ impl Manner {
     }
 }
 
+/// Whether a joint of this robot can stick: its friction jumps at standstill.
+pub fn can_stick(model: &Model) -> bool {
+    let at_rest = AtRest {
+        angle_rad: 0.0,
+        duty: 0.0,
+        torque_nm: 0.0,
+        full_torque_nm: 1.0,
+    };
+    let mut effects = model.effects.iter();
+    effects.any(|instance| {
+        let effect = instance.effect;
+        let is_friction = effect.info().site == Site::Friction;
+        is_friction && effect.slope(&instance.values, &at_rest).is_none()
+    })
+}
+
 /// Share of the time in which a joint's reading has stayed within a code for `STICKS_S`.
-fn still_share(late: &[(f64, [f64; 3])], joint: usize) -> f64 {
+fn still_share(late: &[(f64, Vec<f64>)], joint: usize) -> f64 {
     let (mut since, mut still_s) = (0, 0.0);
     for at in 1..=late.len() {
         let moved = late.get(at).is_none_or(|(_, angles)| {
@@ -124,18 +140,14 @@ fn still_share(late: &[(f64, [f64; 3])], joint: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// An attempt in which the shoulder does this, rad over s, read in codes.
+    /// Ten seconds in which the shoulder does this, rad over s, read in codes; the last five count.
     fn shoulder(of: impl Fn(f64) -> f64) -> Manner {
         let step = 0.005_113_27;
         let sample = |at: usize| {
             let time_s = 0.01 * at as f64;
-            AttemptSample {
-                time_s,
-                lean_rad: 0.0,
-                joint_rad: [(of(time_s) / step).round() * step, 0.0],
-            }
+            (time_s, vec![0.0, (of(time_s) / step).round() * step, 0.0])
         };
-        Manner::of(&(0..=1000).map(sample).collect::<Vec<_>>(), true)
+        Manner::of(&(0..=1000).map(sample).collect::<Vec<_>>(), 5.0, true)
     }
 
     #[test]

@@ -1,0 +1,255 @@
+//! `cargo xtask verdicts`: whether what is said of a design is what it then does.
+//!
+//! `gains`, on random robots, against a simulation of its own (`tests/src/verdicts`); `deploy
+//! --dry-run` against `balance` on the simulated CM-5, on random robots and on robots with one
+//! non-ideality each.
+
+use super::page::Page;
+use super::program;
+use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+use handstand_tests::measured::Measured;
+use handstand_tests::verdicts::robot::{NonIdeality, Robot};
+use handstand_tests::verdicts::{Judged, judge};
+use rand::{Rng as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Command;
+
+/// Measure whether verdicts on designs agree with other simulations and with `balance`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// How many random robots
+    #[arg(long, default_value_t = 30)]
+    robots: u64,
+    /// Seed of robots and starts
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Starts of each robot in the simulation of its own
+    #[arg(long, default_value_t = 40)]
+    runs: usize,
+    /// `gains` alone
+    #[arg(long)]
+    gains: bool,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    page: Page,
+}
+
+/// Share of the robots on which both have to agree: 28 of 30.
+const AGREE: f64 = 28.0 / 30.0;
+/// Attempts of `balance` with each robot, and how many have to stand.
+const ATTEMPTS: usize = 10;
+const STAND: usize = 9;
+/// Starts of `balance` are within this of upright in each joint, deg.
+const START_DEG: f64 = 1.0;
+
+/// Whether the targets are met.
+pub fn run(args: &Args) -> bool {
+    let mut random = ChaCha8Rng::seed_from_u64(args.seed);
+    let robots: Vec<Robot> = (0..args.robots).map(|_| Robot::draw(&mut random)).collect();
+    let (judged, refused) = by_gains(args, &robots);
+    let agreed = judged.iter().filter(|one| one.agrees()).count();
+    let enough = |agreed: usize, of: usize| agreed as f64 >= AGREE * of as f64;
+    let mut well = refused.is_empty() && enough(agreed, judged.len());
+    let mut measured = Measured::default()
+        .table(gains_table(&judged))
+        .lines(refused)
+        .line(format!(
+            "`gains` and a simulation of its own agree on {agreed} of {} robots (at least 28 of 30).",
+            judged.len()
+        ));
+    let mut figures = json!({ "gains": { "agree": agreed, "robots": judged.len() } });
+    if !args.gains {
+        let Some(program) = program::built() else {
+            return false;
+        };
+        let balanced = balanced(&program, &robots, args.seed);
+        let agreed = balanced.iter().filter(|one| one.agrees()).count();
+        let singles = balanced_singly(&program, args.seed);
+        let held = singles.iter().filter(|one| one.agrees());
+        let held = held.count();
+        well &= enough(agreed, balanced.len()) && held == singles.len();
+        measured = measured
+            .table(balance_table(&balanced))
+            .line(format!(
+                "`deploy --dry-run` and `balance` agree on {agreed} of {} robots (at least 28 of \
+                 30).",
+                balanced.len()
+            ))
+            .table(balance_table(&singles))
+            .line(format!(
+                "One non-ideality each: they agree on {held} of {} (all of them); {} stand.",
+                singles.len(),
+                singles.iter().filter(|one| one.stands()).count()
+            ));
+        figures["deploy"] = json!({ "agree": agreed, "robots": balanced.len() });
+        figures["single"] = json!({ "agree": held, "robots": singles.len() });
+    }
+    let json = args.json.then_some(figures);
+    let title = "Verdicts on designs, and what the designs then do";
+    args.page.show(json, &measured, "verdicts", title) && well
+}
+
+fn by_gains(args: &Args, robots: &[Robot]) -> (Vec<Judged>, Vec<String>) {
+    let judged = robots.par_iter().enumerate().map(|(place, robot)| {
+        let said = judge(robot.clone(), args.runs, args.seed + 1000 + place as u64);
+        if let Ok(judged) = &said {
+            eprintln!("{}: {}", place + 1, gains_line(judged).join(" | "));
+        }
+        said.map_err(|why| format!("Robot {} ({}): {why}.", place + 1, robot.words()))
+    });
+    let judged: Vec<Result<Judged, String>> = judged.collect();
+    let (well, refused): (Vec<_>, Vec<_>) = judged.into_iter().partition(Result::is_ok);
+    (
+        well.into_iter().flatten().collect(),
+        refused.into_iter().filter_map(Result::err).collect(),
+    )
+}
+
+fn gains_table(judged: &[Judged]) -> Table {
+    let mut table = Table::new();
+    let header = [
+        "Robot",
+        "Weight of speeds",
+        "`gains`",
+        "of 40",
+        "Own simulation",
+        "stand",
+        "Same",
+    ];
+    table.load_preset(UTF8_HORIZONTAL_ONLY).set_header(header);
+    for one in judged {
+        table.add_row(gains_line(one));
+    }
+    table
+}
+
+fn gains_line(one: &Judged) -> [String; 7] {
+    let verdict = |stands: bool| if stands { "stabilised" } else { "not" };
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    [
+        one.robot.words(),
+        one.robot.q[5].to_string(),
+        verdict(one.gains).to_string(),
+        percent(one.gains_share),
+        verdict(one.stands()).to_string(),
+        percent(one.stood) + if one.held { ", held by friction" } else { "" },
+        if one.agrees() { "yes" } else { "NO" }.to_string(),
+    ]
+}
+
+/// A robot that was deployed to and balanced.
+#[derive(Debug)]
+struct Balanced {
+    robot: String,
+    /// Of ten attempts of `deploy --dry-run`; none where it refuses the robot.
+    verdict: Option<u64>,
+    /// Of ten attempts of `balance`.
+    stood: usize,
+}
+
+impl Balanced {
+    fn stands(&self) -> bool {
+        self.stood >= STAND
+    }
+
+    fn agrees(&self) -> bool {
+        self.verdict.is_some_and(|stood| stood >= STAND as u64) == self.stands()
+    }
+}
+
+fn balanced(program: &Path, robots: &[Robot], seed: u64) -> Vec<Balanced> {
+    let each = robots.par_iter().enumerate();
+    each.map(|(place, robot)| {
+        let balanced = balance(program, robot, seed + 2000 + place as u64);
+        let line = balance_line(&balanced);
+        eprintln!("{}: {}", place + 1, line.join(" | "));
+        balanced
+    })
+    .collect()
+}
+
+/// The paper's robot with each of the non-idealities that a plan can hold, alone.
+fn balanced_singly(program: &Path, seed: u64) -> Vec<Balanced> {
+    let singles = [
+        NonIdeality::Delay(0.018),
+        NonIdeality::DeadZone(1, 0.2, 0.0),
+        NonIdeality::Coulomb(1, 0.05),
+        NonIdeality::Viscous(1, 0.05),
+        NonIdeality::Saturation(0.6),
+        NonIdeality::Scale(0.7),
+        NonIdeality::Lag(1, 0.02),
+        NonIdeality::Backlash(1, 0.03),
+    ];
+    let robots = singles.map(Robot::paper);
+    balanced(program, &robots, seed + 1000)
+}
+
+/// Deploys to a robot and balances it, by the program's own commands without an option but the
+/// model.
+fn balance(program: &Path, robot: &Robot, seed: u64) -> Balanced {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let starts: Vec<String> = (0..ATTEMPTS)
+        .map(|_| {
+            let lean: [f64; 3] =
+                std::array::from_fn(|_| random.random_range(-START_DEG..=START_DEG));
+            let [first, second, third] = lean;
+            format!("{first:.3}/{second:.3}/{third:.3}")
+        })
+        .collect();
+    let folder = tempfile::tempdir();
+    let Ok(folder) = folder else {
+        return Balanced {
+            robot: "no temporary folder".into(),
+            verdict: None,
+            stood: 0,
+        };
+    };
+    let written = std::fs::write(folder.path().join("robot.toml"), robot.toml());
+    let run = |words: &str| {
+        let mut command = Command::new(program);
+        command.current_dir(folder.path()).args(words.split(' '));
+        command.output().ok().filter(|_| written.is_ok())
+    };
+    let said = run("deploy robot.toml --dry-run --states 1 --json -q");
+    let said = said.and_then(|output| serde_json::from_slice::<Value>(&output.stdout).ok());
+    let stood = starts.iter().filter(|lean| {
+        let port = format!("sim-cm5:robot=robot.toml,start=held,lean={lean}");
+        let words = format!("balance robot.toml --port {port} --yes --seconds 10 --countdown 0 -q");
+        run(&words).is_some_and(|output| output.status.success())
+    });
+    Balanced {
+        robot: robot.words(),
+        verdict: said.and_then(|said| said["verdict"]["stood"].as_u64()),
+        stood: stood.count(),
+    }
+}
+
+fn balance_table(balanced: &[Balanced]) -> Table {
+    let mut table = Table::new();
+    let header = [
+        "Robot",
+        "`deploy --dry-run`, of 10",
+        "`balance`, of 10",
+        "Same",
+    ];
+    table.load_preset(UTF8_HORIZONTAL_ONLY).set_header(header);
+    for one in balanced {
+        table.add_row(balance_line(one));
+    }
+    table
+}
+
+fn balance_line(one: &Balanced) -> [String; 4] {
+    [
+        one.robot.clone(),
+        one.verdict
+            .map_or("refused".into(), |stood| stood.to_string()),
+        one.stood.to_string(),
+        if one.agrees() { "yes" } else { "NO" }.to_string(),
+    ]
+}
