@@ -130,8 +130,12 @@ fn a_partial_explanation_is_not_to_be_taken_for_the_cause() {
     assert_eq!(
         partial.summary[0],
         "No known effect explains all of it; Coulomb friction at joint 1 comes closest and removes \
-         99.8 % of the squared error."
+         99.7 % of the squared error that refitted values leave."
     );
+    // Where no value is free the effect is all that changes.
+    let mut alone = partial.clone();
+    alone.error.refitted_rad = None;
+    assert!(headline(&alone).ends_with("removes 99.8 % of the squared error."));
     assert!(partial.summary[1].contains("do not take it for the cause"));
     let nothing = said(Verdict::Unexplained, vec![], vec![]);
     assert_eq!(
@@ -146,6 +150,28 @@ fn wrong(path: &str, given: f64, to: f64) -> WrongValue {
         free: path.starts_with("viscous"),
         fitted: value(path, to, false),
     }
+}
+
+#[test]
+fn a_model_with_what_was_found_is_named_in_words() {
+    let name = |effects: &[FittedEffect], wrong: &[WrongValue]| what_was_found(effects, wrong);
+    let values = [
+        wrong("link1.mass_kg", 0.2, 0.3),
+        wrong("viscous@1.coefficient_nm_s_rad", 0.01, 0.06),
+    ];
+    let found = [effect("coulomb", Some(1))];
+    assert_eq!(name(&[], &[]), None);
+    let both = name(&found, &values).unwrap();
+    assert_eq!(
+        both,
+        "Coulomb friction at joint 1, and other values of the mass of link 1 and viscous friction at \
+         joint 1"
+    );
+    assert_eq!(
+        name(&[], &values[..1]).unwrap(),
+        "another value of the mass of link 1"
+    );
+    assert_eq!(name(&found, &[]).unwrap(), "Coulomb friction at joint 1");
 }
 
 #[test]
@@ -168,6 +194,17 @@ fn a_wrong_value_is_told_with_both_numbers_and_how_to_mend_it() {
              -o better.toml",
             "See what it gains: handstand compare MODEL HELD_OUT... --model better.toml --horizon 0.5",
         ]
+    );
+}
+
+#[test]
+fn a_wrong_value_is_named_in_words() {
+    let mut said = said(Verdict::WrongValue, vec![], vec![]);
+    said.wrong_values = vec![wrong("link1.mass_kg", 0.2, 0.3)];
+    let headline = headline(&said);
+    assert!(
+        headline.starts_with("Your value of the mass of link 1 is wrong: 0.200 -> "),
+        "{headline}"
     );
 }
 
