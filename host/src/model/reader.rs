@@ -196,6 +196,23 @@ impl<'a> Table<'a> {
         texts.collect::<Result<_>>().map(Some)
     }
 
+    /// The two numbers under `key`, the first one `-inf` and the second one `inf` at most.
+    pub fn pair(&self, key: &str) -> Result<Option<(f64, f64)>> {
+        let number = |value: &Value| {
+            let whole = || value.as_integer().map(|integer| integer as f64);
+            value.as_float().or_else(whole)
+        };
+        self.get(key, "two numbers, as `[0.1, 0.2]`", |item| {
+            let array = item.as_array().filter(|array| array.len() == 2)?;
+            Some((number(array.get(0)?)?, number(array.get(1)?)?))
+        })
+    }
+
+    /// Its keys, in the file's order.
+    pub fn keys(&self) -> Vec<&'a str> {
+        self.items.iter().map(|(key, _)| key).collect()
+    }
+
     /// Whether the item under `key` is a list.
     pub fn is_list(&self, key: &str) -> bool {
         let item = self.items.get(key);
@@ -285,7 +302,8 @@ impl<'a> Table<'a> {
         })
     }
 
-    fn key_span(&self, key: &str) -> Option<Range<usize>> {
+    /// Where its key stands.
+    pub fn key_span(&self, key: &str) -> Option<Range<usize>> {
         let (key, _) = self.items.get_key_value(key)?;
         key.span().or_else(|| self.span.clone())
     }
