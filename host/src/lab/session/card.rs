@@ -1,5 +1,6 @@
 //! A diagnosis as pages show it and sessions keep it: sentences, and a card for each explanation.
 
+use super::names::value_name;
 use crate::diagnose::{Alternative, Diagnosis, FittedEffect, RuledOut, Verdict, WrongValue};
 use crate::fitting::FittedValue;
 use crate::output::number::measured;
@@ -136,7 +137,7 @@ fn rival(rival: &Alternative, held_out: bool) -> SavedCard {
 fn explanation(effects: &[FittedEffect], wrong: &[WrongValue]) -> SavedCard {
     let text = |fitted: &FittedValue| {
         let value = measured(fitted.value, fitted.low, fitted.high, &fitted.unit);
-        format!("{} = {value}", fitted.path)
+        format!("{} {value}", value_name(&fitted.path))
     };
     let parameters = effects.iter().flat_map(|effect| &effect.parameters);
     let wrong_values = wrong.iter().map(|wrong| &wrong.fitted);
