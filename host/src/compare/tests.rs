@@ -138,7 +138,11 @@ fn an_error_after_reversals_is_named_so() {
                 }
         })
         .collect();
-    let all = ranked(&error, 1e-4, met(&features(&model, &motions, 0), "rad"));
+    let all = ranked(
+        &error,
+        1e-4,
+        met(&features(&model, &motions, 0), ("rad", 1.0)),
+    );
     assert_eq!(all[0].words, "within 80 ms after a reversal");
     assert!(all[0].error_share > 0.95 && all[0].sample_share < 0.12);
 }
@@ -296,7 +300,7 @@ proptest! {
         let features = features(&pendulum(), &motions, 0);
         prop_assert_eq!(features.len(), 2 * rows.len());
         let error: Vec<f64> = features.iter().map(|m| m.angle_rad).collect();
-        for ranked in ranked(&error, 0.0, met(&features, "rad")) {
+        for ranked in ranked(&error, 0.0, met(&features, ("rad", 1.0))) {
             prop_assert!((0.0..=1.0 + 1e-12).contains(&ranked.error_share));
             prop_assert!((0.0..=1.0).contains(&ranked.sample_share));
         }

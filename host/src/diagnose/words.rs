@@ -238,16 +238,19 @@ fn summary(diagnosis: &Diagnosis) -> Vec<String> {
             values.collect::<Vec<_>>().join(", ")
         ));
     }
-    lines.push(error_line(diagnosis));
+    lines.push(error_line(
+        diagnosis,
+        (diagnosis.error.quantity.milli(), 1e3),
+    ));
     lines
 }
 
-fn error_line(diagnosis: &Diagnosis) -> String {
+/// What becomes of the error, in a unit of which one SI unit has so many.
+pub(crate) fn error_line(diagnosis: &Diagnosis, (unit, per_si): (&str, f64)) -> String {
     let error = &diagnosis.error;
     let motions = if error.held_out { "held-out" } else { "fitted" };
     let [before, after, floor] =
-        [error.before_rad, error.after_rad, error.floor_rad].map(|rad| short(1e3 * rad));
-    let unit = error.quantity.milli();
+        [error.before_rad, error.after_rad, error.floor_rad].map(|rad| short(per_si * rad));
     if diagnosis.effects.is_empty() && diagnosis.wrong_values.is_empty() {
         return format!(
             "The error on {motions} motions is {before} {unit}; the floor is {floor} {unit}."

@@ -49,7 +49,7 @@ fn shown(
         section {
             h2 { "What is missing?" }
             (ask(saved, evaluation))
-            @if let Some(diagnosis) = &saved.diagnosis { (said(saved, diagnosis, evaluation)) }
+            @if let Some(diagnosis) = &saved.diagnosis { (said(session.number, saved, diagnosis, evaluation)) }
             @if let Some(proposal) = saved.proposal() { (proposed(session.number, proposal)) }
         }
         section {
@@ -141,6 +141,7 @@ fn ask(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
 }
 
 fn said(
+    number: u32,
     saved: &SavedSession,
     diagnosis: &SavedDiagnosis,
     evaluation: &SessionEvaluation,
@@ -176,6 +177,7 @@ fn said(
                     (over(Horizon::from_seconds(diagnosis.horizon_s))) }
             }
         }
+        p { a.button href={ "/s/" (number) "/download/report.html" } { "Save the report" } }
         @if !current { p.note {
             "The model in force is another one by now; diagnose again to learn about it." } }
         @if next().next().is_some() {

@@ -82,6 +82,7 @@ impl LabSession {
     pub fn begin_estimated(&self, report: &JobReport) -> Result<()> {
         let begun = self.saved();
         let toml = self.estimated(&begun, report)?.toml()?;
+        report.tell("the new model");
         unchanged(&self.saved(), &begun)?;
         self.begin_model("estimated from the log", &toml)
     }

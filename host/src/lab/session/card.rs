@@ -1,6 +1,8 @@
 //! A diagnosis as pages show it and sessions keep it: sentences, and a card for each explanation.
 
+use super::evaluation::ShownUnit;
 use super::names::value_name;
+use crate::diagnose::words::error_line;
 use crate::diagnose::{Alternative, Diagnosis, FittedEffect, RuledOut, Verdict, WrongValue};
 use crate::fitting::FittedValue;
 use crate::output::number::measured;
@@ -101,6 +103,16 @@ impl SavedDiagnosis {
             horizon_s: diagnosis.horizon_s,
             cards,
         }
+    }
+}
+
+impl SavedDiagnosis {
+    /// Tells what becomes of the error in the unit in which people read it.
+    pub fn tell_in(&mut self, unit: ShownUnit, diagnosis: &Diagnosis) {
+        let own = error_line(diagnosis, (diagnosis.error.quantity.milli(), 1e3));
+        let shown = error_line(diagnosis, (unit.error_unit, unit.error_per_si));
+        let lines = self.summary.iter_mut().filter(|line| **line == own);
+        lines.for_each(|line| line.clone_from(&shown));
     }
 }
 

@@ -3,6 +3,7 @@
 use super::LabSession;
 use super::card::SavedDiagnosis;
 use super::data::model_file;
+use super::evaluation::ShownUnit;
 use super::job::JobReport;
 use super::kept::DiagnosedFiles;
 use super::names::{effect_name, listed, value_name};
@@ -65,6 +66,10 @@ impl LabSession {
         diagnosis: &Diagnosis,
     ) -> Result<()> {
         let mut said = SavedDiagnosis::of(diagnosis, begun.current);
+        if let Some(model) = self.model(begun)? {
+            let shown = ShownUnit::of_errors(diagnosis.error.quantity, &model);
+            said.tell_in(shown, diagnosis);
+        }
         for line in said.summary.iter_mut().chain(&mut said.warnings) {
             *line = self.shortened(line);
         }
@@ -108,6 +113,7 @@ impl LabSession {
             Addition::Undetermined(why) => return Err(undetermined(&why)),
         };
         self.keep_step(
+            report,
             &begun,
             SavedStep {
                 title: format!("{} added", listed(&each(names, effect_name))),
@@ -144,6 +150,7 @@ impl LabSession {
         let toml = with_refitted(&text, &file, &model, &refitted, &split)?;
         let names: Vec<String> = free.iter().map(ToString::to_string).collect();
         self.keep_step(
+            report,
             &begun,
             SavedStep {
                 title: format!("{} fitted", listed(&each(&names, value_name))),
@@ -155,7 +162,9 @@ impl LabSession {
         )
     }
 
-    fn keep_step(&self, begun: &SavedSession, step: SavedStep) -> Result<()> {
+    /// Keeps what a fit found, unless it was stopped meanwhile.
+    fn keep_step(&self, report: &JobReport, begun: &SavedSession, step: SavedStep) -> Result<()> {
+        report.tell("the new model");
         unchanged(&self.saved(), begun)?;
         self.push_step(step)
     }
