@@ -273,6 +273,16 @@ fn conditions_are_worded_to_end_a_sentence() {
 }
 
 #[test]
+fn ranges_of_angle_are_told_in_the_unit_of_the_log() {
+    let times = (0..41).map(|k| 0.01 * f64::from(k)).collect();
+    let angles = (0..41).map(|k| -1.0 + 0.05 * f64::from(k)).collect();
+    let features = features(&pendulum(), &[motion(times, angles)], 0);
+    let last = |shown| met(&features, shown).pop().unwrap().words;
+    assert_eq!(last(("rad", 1.0)), "between 0.67 and 1.00 rad");
+    assert_eq!(last(("deg", 1f64.to_degrees())), "between 38 and 57 deg");
+}
+
+#[test]
 fn no_motion_at_all_is_no_panic() {
     let nothing = compare(&pendulum(), "nothing", &[], None);
     assert_eq!(nothing.signals[0].rms, 0.0);

