@@ -11,6 +11,9 @@ use std::time::{Duration, Instant};
 /// Longer than any answer takes on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
+/// Longer than any work takes on a busy machine.
+const WORKING: Duration = Duration::from_secs(240);
+
 /// A lab that ends with the test.
 #[derive(Debug)]
 pub struct LabServer {
@@ -215,8 +218,8 @@ impl LabServer {
 
     /// Waits for the end of what session 1 does, and gives its last state.
     pub fn wait(&self) -> Value {
-        let end = self.ends_within(PATIENCE);
-        end.unwrap_or_else(|state| panic!("it has not ended in {PATIENCE:?}: {state}"))
+        let end = self.ends_within(WORKING);
+        end.unwrap_or_else(|state| panic!("it has not ended in {WORKING:?}: {state}"))
     }
 
     /// The last state of what session 1 does, or, as an error, the one after so long.
