@@ -4,7 +4,7 @@ use crate::errors::{exception, usage};
 use crate::logs::{FrameFile, is_frame, request};
 use crate::model::Model;
 use crate::value::plain;
-use handstand::fitting::estimate;
+use handstand::fitting::{StopSwitch, estimate};
 use handstand::log::RawLog;
 use handstand::log::init::Draft as LogDraft;
 use pyo3::prelude::*;
@@ -89,7 +89,7 @@ pub fn init(
             draft.set_links(what, &values).map_err(exception)?;
         }
     }
-    estimate(&mut draft, &asked).map_err(told)?;
+    estimate(&mut draft, &asked, &StopSwitch::default(), &|_| ()).map_err(told)?;
     let text = draft.toml().map_err(exception)?;
     Ok(Draft {
         model: Model::of(text, PathBuf::from("model.toml")).map_err(exception)?,

@@ -1,7 +1,9 @@
 //! `handstand fit MODEL LOG... -o NEW.toml`: a model's free values, fitted to logs.
 //!
-//! Free are the values the model's `[fit]` names, or those that `--free` names instead. The new
-//! file is the old one with new values, and where they came from; comments and layout stay.
+//! Free are the values the model's `[fit]` names, or those that `--free` names instead. `--bounds`
+//! keeps a value between two others, and writes that into the new file, where later fits and
+//! diagnoses heed it. The new file is the old one with new values, and where they came from; comments
+//! and layout stay.
 //!
 //! ```console
 //! $ handstand fit arm.toml swing.csv --free coulomb@1.torque_nm -o fitted.toml
@@ -15,6 +17,7 @@
 use super::{ExitStatus, Talk, input, show};
 use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
+use handstand::model::edit::set_bounds;
 use handstand::report::{refitted_json, refitted_text};
 use handstand::{Model, Result, output};
 use serde_json::json;
@@ -31,13 +34,17 @@ pub struct FitArgs {
     /// Value to fit instead of those the model frees: `link1.com_m`, `coulomb@1.torque_nm`
     #[arg(long, value_name = "PATH")]
     free: Vec<String>,
+    /// Bounds that a value is kept in, also by later fits and diagnoses: `link1.com_m=0.05..0.2`,
+    /// `joint1.gain_per_rad=4..inf`
+    #[arg(long, value_name = "PATH=LOW..HIGH")]
+    bounds: Vec<String>,
     #[command(flatten)]
     fit: input::RefitArgs,
 }
 
 /// Fits, writes, prints.
 pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
-    let text = input::model_text(&args.model)?;
+    let text = bounded(args)?;
     let model = Model::parse(&text, &args.model)?;
     let free = free_parameters(&model, &args.free)?;
     let split = args.fit.motions(&model, &args.logs, talk)?;
@@ -50,6 +57,19 @@ pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = with_refitted(&text, &args.model, &model, &refitted, &split)?;
     let before = "for the model as it was";
     write(&refitted, &text, &[], before, &args.fit, talk)
+}
+
+/// The model's text with the bounds that were asked for.
+fn bounded(args: &FitArgs) -> Result<String> {
+    let text = input::model_text(&args.model)?;
+    let bounds = args.bounds.iter().map(|asked| {
+        let (path, range) = asked.split_once('=').unwrap_or((asked, ""));
+        Ok((path.parse()?, Some(input::range("bounds", range)?)))
+    });
+    match bounds.collect::<Result<Vec<_>>>()?.as_slice() {
+        [] => Ok(text),
+        bounds => set_bounds(&text, &args.model, bounds),
+    }
 }
 
 /// Says why there is no new model.

@@ -15,7 +15,7 @@
 //! where a file was written) and `guesses` (`what`, `guess`, `why`).
 
 use super::{ExitStatus, Talk, input};
-use handstand::fitting::estimate;
+use handstand::fitting::{StopSwitch, estimate};
 use handstand::log::init::Draft;
 use handstand::log::{LogRequest, RawLog};
 use handstand::output::vacant;
@@ -78,7 +78,8 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
         ask(args, &mut draft)?;
     }
     let said = draft.guesses.len();
-    estimate(&mut draft, &args.log)?;
+    let stop = StopSwitch::default();
+    estimate(&mut draft, &args.log, &stop, &talk.progress())?;
     for guess in draft.guesses.iter().skip(said) {
         talk.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
     }

@@ -60,9 +60,9 @@ pub(super) struct Met {
     pub holds: Vec<bool>,
 }
 
-/// Every condition, ranges of angle included, asked of every sample; `unit` is that of the angle,
-/// or of a slide's displacement.
-pub(super) fn met(features: &[SampleFeatures], unit: &str) -> Vec<Met> {
+/// Every condition, ranges of angle included, asked of every sample; `shown` is the unit in which
+/// people read the angle, or a slide's displacement, and how many of them one SI unit is.
+pub(super) fn met(features: &[SampleFeatures], shown: (&str, f64)) -> Vec<Met> {
     let mut all: Vec<Met> = CONDITIONS
         .iter()
         .map(|(words, holds)| Met {
@@ -70,12 +70,12 @@ pub(super) fn met(features: &[SampleFeatures], unit: &str) -> Vec<Met> {
             holds: features.iter().map(holds).collect(),
         })
         .collect();
-    all.extend(angle_ranges(features, unit));
+    all.extend(angle_ranges(features, shown));
     all
 }
 
 /// Sixths of the range between the smallest and the largest angle.
-fn angle_ranges(features: &[SampleFeatures], unit: &str) -> Vec<Met> {
+fn angle_ranges(features: &[SampleFeatures], (unit, per_si): (&str, f64)) -> Vec<Met> {
     let angles = || features.iter().map(|m| m.angle_rad);
     let low = angles().fold(f64::INFINITY, f64::min);
     let high = angles().fold(f64::NEG_INFINITY, f64::max);
@@ -83,13 +83,22 @@ fn angle_ranges(features: &[SampleFeatures], unit: &str) -> Vec<Met> {
         return Vec::new();
     }
     let edge = |part: usize| low + (high - low) * part as f64 / ANGLE_PARTS as f64;
-    let digits = if high - low < 0.6 { 3 } else { 2 };
+    // Ends that differ look different.
+    let digits = match per_si * (high - low) {
+        range if range < 0.6 => 3,
+        range if range < 60.0 => 2,
+        _ => 0,
+    };
     (0..ANGLE_PARTS)
         .map(|part| {
             let (from, to) = (edge(part), edge(part + 1));
             let last = part + 1 == ANGLE_PARTS;
             Met {
-                words: format!("between {from:.digits$} and {to:.digits$} {unit}"),
+                words: format!(
+                    "between {:.digits$} and {:.digits$} {unit}",
+                    per_si * from,
+                    per_si * to
+                ),
                 holds: angles().map(|a| a >= from && (a < to || last)).collect(),
             }
         })

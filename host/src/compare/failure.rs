@@ -45,10 +45,13 @@ pub(super) fn failing(
         let joint = signal.joint - 1;
         if signal.share_above_floor > LEAST_ABOVE_FLOOR {
             let error: Vec<f64> = residual.iter().flatten().copied().collect();
-            let conditions = met(
-                &features(model, &data.motions, joint),
-                model.joints[joint].units()[0],
-            );
+            let degrees = model.log.joints[joint].in_degrees();
+            let shown = if degrees {
+                ("deg", 1f64.to_degrees())
+            } else {
+                (model.joints[joint].units()[0], 1.0)
+            };
+            let conditions = met(&features(model, &data.motions, joint), shown);
             let ranked = ranked(&error, signal.floor, conditions);
             all.extend(
                 ranked

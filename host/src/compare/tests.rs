@@ -138,7 +138,11 @@ fn an_error_after_reversals_is_named_so() {
                 }
         })
         .collect();
-    let all = ranked(&error, 1e-4, met(&features(&model, &motions, 0), "rad"));
+    let all = ranked(
+        &error,
+        1e-4,
+        met(&features(&model, &motions, 0), ("rad", 1.0)),
+    );
     assert_eq!(all[0].words, "within 80 ms after a reversal");
     assert!(all[0].error_share > 0.95 && all[0].sample_share < 0.12);
 }
@@ -269,6 +273,16 @@ fn conditions_are_worded_to_end_a_sentence() {
 }
 
 #[test]
+fn ranges_of_angle_are_told_in_the_unit_of_the_log() {
+    let times = (0..41).map(|k| 0.01 * f64::from(k)).collect();
+    let angles = (0..41).map(|k| -1.0 + 0.05 * f64::from(k)).collect();
+    let features = features(&pendulum(), &[motion(times, angles)], 0);
+    let last = |shown| met(&features, shown).pop().unwrap().words;
+    assert_eq!(last(("rad", 1.0)), "between 0.67 and 1.00 rad");
+    assert_eq!(last(("deg", 1f64.to_degrees())), "between 38 and 57 deg");
+}
+
+#[test]
 fn no_motion_at_all_is_no_panic() {
     let nothing = compare(&pendulum(), "nothing", &[], None);
     assert_eq!(nothing.signals[0].rms, 0.0);
@@ -296,7 +310,7 @@ proptest! {
         let features = features(&pendulum(), &motions, 0);
         prop_assert_eq!(features.len(), 2 * rows.len());
         let error: Vec<f64> = features.iter().map(|m| m.angle_rad).collect();
-        for ranked in ranked(&error, 0.0, met(&features, "rad")) {
+        for ranked in ranked(&error, 0.0, met(&features, ("rad", 1.0))) {
             prop_assert!((0.0..=1.0 + 1e-12).contains(&ranked.error_share));
             prop_assert!((0.0..=1.0).contains(&ranked.sample_share));
         }

@@ -317,11 +317,15 @@ fn better(name: &str, best: &Hypothesis, other: &Hypothesis) -> String {
         return format!("{name} leaves significantly less of the fitted motions' error");
     }
     let gained = best.pooled().zip(other.pooled());
-    let gained = gained.map_or(0.0, |(best, other)| gain(&paired(&other, &best)));
-    format!(
-        "{name} is more likely, by {} in log-likelihood",
-        short(gained)
-    )
+    match gained.map(|(best, other)| gain(&paired(&other, &best))) {
+        Some(gained) if gained > 0.0 => {
+            format!(
+                "{name} is more likely, by {} in log-likelihood",
+                short(gained)
+            )
+        }
+        _ => format!("{name} explains these motions better"),
+    }
 }
 
 fn motions(evidence: &VerdictEvidence) -> Vec<MotionError> {

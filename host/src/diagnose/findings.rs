@@ -1,5 +1,6 @@
 //! The result of a diagnosis, as plain values for every writer: text, JSON, HTML.
 
+use super::words;
 use crate::effects;
 use crate::fitting::{Candidate, ErrorReduction, FittedValue, MotionWindow};
 use crate::log::{LogFinding, Severity};
@@ -260,15 +261,8 @@ impl Diagnosis {
     /// The model as it is and, where anything was found, with it; each with a name.
     pub fn models(&self, model: &Model) -> Vec<(String, Model)> {
         let mut models = vec![("the model as it is".to_string(), model.clone())];
-        let effects = self.effects.iter().map(FittedEffect::address);
-        let wrong = self.wrong_values.iter();
-        let corrected = wrong.map(|wrong| format!("{} corrected", wrong.fitted.path));
-        let parts: Vec<String> = effects.chain(corrected).collect();
-        if !parts.is_empty() {
-            models.push((
-                format!("the model with {}", parts.join(", ")),
-                self.applied_to(model),
-            ));
+        if let Some(found) = words::what_was_found(&self.effects, &self.wrong_values) {
+            models.push((format!("the model with {found}"), self.applied_to(model)));
         }
         models
     }

@@ -85,18 +85,19 @@ fn unrivalled(diagnosis: &Diagnosis) -> String {
     format!("Explained by {first}; what was not tried may explain it as well.")
 }
 
-/// "Your value of link1.mass_kg is wrong: 0.2 -> 0.246 kg (0.244 to 0.248)."
+/// "Your value of the mass of link 1 is wrong: 0.2 -> 0.246 kg (0.244 to 0.248)."
 fn wrong_values(wrong: &[WrongValue]) -> String {
     let changes: Vec<String> = wrong.iter().map(change).collect();
     match wrong {
         [one] => format!(
             "Your value of {} is wrong: {}.",
-            one.fitted.path, changes[0]
+            value_name(&one.fitted.path),
+            changes[0]
         ),
         _ => {
             let paths = wrong.iter().zip(&changes);
             let all: Vec<String> = paths
-                .map(|(w, change)| format!("{}: {change}", w.fitted.path))
+                .map(|(w, change)| format!("{}: {change}", value_name(&w.fitted.path)))
                 .collect();
             format!("Values of the model are wrong: {}.", all.join("; "))
         }
@@ -110,11 +111,18 @@ pub(crate) fn change(wrong: &WrongValue) -> String {
     format!("{} -> {to}", short(wrong.given))
 }
 
-/// "96 % of the squared error" that what was found removes; nothing where it removes none.
+/// "96 % of the squared error" that what was found removes; nothing where it removes none. Of
+/// effects what refitted values alone remove is not their own: "of what refitted values leave of it".
 fn share(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
-    let removed = 1.0 - (error.after_rad / error.before_rad).powi(2);
-    (removed > 0.0).then(|| format!("{} of the squared error", percent(removed)))
+    let gains = |rad: &f64| !diagnosis.effects.is_empty() && *rad < 0.999 * error.before_rad;
+    let refitted = error.refitted_rad.filter(gains);
+    let removed = 1.0 - (error.after_rad / refitted.unwrap_or(error.before_rad)).powi(2);
+    let of = match refitted {
+        Some(_) => "of the squared error that refitted values leave",
+        None => "of the squared error",
+    };
+    (removed > 0.0).then(|| format!("{} {of}", percent(removed)))
 }
 
 /// What an explanation changes: "A at joint 1 and B", "another value of the mass of link 1".
@@ -127,6 +135,22 @@ pub(crate) fn explained_by(effects: &[FittedEffect], wrong: &[WrongValue]) -> St
             listed(paths.collect())
         }
         effects => joined(effects),
+    }
+}
+
+/// What a model has more or otherwise than the one as given: "A at joint 1, and other values of the
+/// mass of link 1 and the torque of B"; none where nothing was found.
+pub(super) fn what_was_found(effects: &[FittedEffect], wrong: &[WrongValue]) -> Option<String> {
+    let values: Vec<String> = wrong.iter().map(|w| value_name(&w.fitted.path)).collect();
+    let other = match values.len() {
+        0 => None,
+        1 => Some(format!("another value of {}", listed(values))),
+        _ => Some(format!("other values of {}", listed(values))),
+    };
+    match (effects, other) {
+        ([], other) => other,
+        (effects, None) => Some(joined(effects)),
+        (effects, Some(other)) => Some(format!("{}, and {other}", joined(effects))),
     }
 }
 
@@ -214,16 +238,19 @@ fn summary(diagnosis: &Diagnosis) -> Vec<String> {
             values.collect::<Vec<_>>().join(", ")
         ));
     }
-    lines.push(error_line(diagnosis));
+    lines.push(error_line(
+        diagnosis,
+        (diagnosis.error.quantity.milli(), 1e3),
+    ));
     lines
 }
 
-fn error_line(diagnosis: &Diagnosis) -> String {
+/// What becomes of the error, in a unit of which one SI unit has so many.
+pub(crate) fn error_line(diagnosis: &Diagnosis, (unit, per_si): (&str, f64)) -> String {
     let error = &diagnosis.error;
     let motions = if error.held_out { "held-out" } else { "fitted" };
     let [before, after, floor] =
-        [error.before_rad, error.after_rad, error.floor_rad].map(|rad| short(1e3 * rad));
-    let unit = error.quantity.milli();
+        [error.before_rad, error.after_rad, error.floor_rad].map(|rad| short(per_si * rad));
     if diagnosis.effects.is_empty() && diagnosis.wrong_values.is_empty() {
         return format!(
             "The error on {motions} motions is {before} {unit}; the floor is {floor} {unit}."

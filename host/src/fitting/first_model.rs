@@ -8,13 +8,16 @@
 //! stays free all the same, and is said to be a guess: held wrong, it bends what is looked for
 //! beside it.
 
+mod course;
 mod levers;
 mod settling;
 mod values;
 
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
+use super::halt::StopSwitch;
 use super::horizon::Horizon;
+use super::progress::Progress;
 use super::solve::fit;
 use super::step_size::coarsened;
 use super::ways::best_fit;
@@ -23,6 +26,7 @@ use crate::log::init::Draft;
 use crate::log::{LogRequest, Motion, excerpts, read};
 use crate::model::{AngleZero, Drive, LinkField, Model, ParameterPath};
 use crate::output::number::{measured, mrad};
+use course::{Course, Stage};
 use levers::with_levers;
 use rayon::prelude::*;
 use settling::{Settled, Settling};
@@ -63,9 +67,16 @@ struct FittedMeaning {
 /// with its 95 % interval among the draft's guesses. A log that is refused, or in which nothing
 /// moves, leaves the draft as it is, and a note says why.
 ///
+/// `stop` abandons it, `heard` hears how far it has come.
+///
 /// # Errors
 /// Figures that make no model.
-pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
+pub fn estimate(
+    draft: &mut Draft,
+    request: &LogRequest,
+    stop: &StopSwitch,
+    heard: &(dyn Fn(Progress) + Sync),
+) -> Result<()> {
     let drafted = Model::parse(&draft.toml()?, Path::new("model.toml"))?;
     let motions = match read(std::slice::from_ref(request), &drafted.log) {
         Ok(motions) => motions,
@@ -79,7 +90,8 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
         }
     };
     let rubbing = rubbing(&drafted, &motions);
-    let Some(best) = best_meaning(&rubbing, draft, &motions) else {
+    let course = Course::new(stop, heard);
+    let Some(best) = best_meaning(&rubbing, draft, &motions, &course) else {
         draft.note("values", "guesses alone", "nothing moves in the log");
         return Ok(());
     };
@@ -95,7 +107,7 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
         draft.reverse_input(joint);
     }
     let few = excerpts(&read_so(&motions, reversed), SAMPLES);
-    let data = windows(&best.model, few, WINDOW_S);
+    let data = windows(&best.model, few, WINDOW_S).halted_by(&course.halt);
     let free = free_of(&rubbing, draft);
     let with_levers = with_levers(&free);
     // Short windows may lead astray where they show little: a swing of seconds.
@@ -106,12 +118,16 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     };
     begun.iter_mut().for_each(|model| model.angle_zero = *zero);
     begun.push(best.model);
-    let fitted = begun
-        .par_iter()
-        .map(|model| best_fit(model, &with_levers, &data));
+    let count = begun.len();
+    let fitted = begun.par_iter().map(|model| {
+        let fit = best_fit(model, &with_levers, &data);
+        course.step(Stage::Fitting, count);
+        fit
+    });
     let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return Ok(());
     };
+    course.begin(Stage::Settling);
     let settled = Settling {
         drafted: &drafted,
         data: &data,
@@ -187,13 +203,20 @@ fn windows(model: &Model, motions: Vec<Motion>, seconds: f64) -> FitData {
 
 /// The meaning of the log that a rough fit explains best; the drafted one unless another is clearly
 /// better. None where nothing moves.
-fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<FittedMeaning> {
-    let few = windows(model, excerpts(motions, FEW), SHORT_S);
+fn best_meaning(
+    model: &Model,
+    draft: &Draft,
+    motions: &[Motion],
+    course: &Course,
+) -> Option<FittedMeaning> {
+    let few = windows(model, excerpts(motions, FEW), SHORT_S).halted_by(&course.halt);
     if few.windows.is_empty() || !moves(&few) {
         return None;
     }
     let model = &coarsened(model, &few);
     let free = with_levers(&free_of(model, draft));
+    let meanings = meanings(model, draft);
+    let count = meanings.len();
     let fitted = |meaning: Meaning| {
         let data = few
             .clone()
@@ -214,13 +237,14 @@ fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Fitt
         let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let best = best.resume(&data, FitOptions::iterations(ON).rough());
         let rms_rad = best.rms(&data);
+        course.step(Stage::Screening, count);
         Some(FittedMeaning {
             meaning,
             model: best.model,
             rms_rad,
         })
     };
-    let all = meanings(model, draft).into_par_iter().filter_map(fitted);
+    let all = meanings.into_par_iter().filter_map(fitted);
     let mut all: Vec<FittedMeaning> = all.collect();
     all.retain(|candidate| candidate.rms_rad.is_finite());
     let drafted = all.first()?.rms_rad;

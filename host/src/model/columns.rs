@@ -167,6 +167,12 @@ impl JointColumns {
         }
     }
 
+    /// Whether the log has its angle, or its speed where that is all there is, in degrees.
+    pub fn in_degrees(&self) -> bool {
+        let first = self.measured().and_then(|mean| mean.columns().first());
+        first.is_some_and(|column| column.unit.name.starts_with("deg"))
+    }
+
     /// The columns of [`JointColumns::signal`].
     pub fn measured(&self) -> Option<&ColumnMean> {
         self.position.as_ref().or(self.velocity.as_ref())

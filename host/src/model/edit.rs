@@ -4,11 +4,13 @@ mod reading;
 
 pub use reading::{changed_lines, set_reading};
 
+mod bounds;
 mod columns;
 mod provenance;
 #[cfg(test)]
 mod tests;
 
+pub use bounds::set_bounds;
 pub use columns::{ChosenColumn, ColumnChoice, set_log_columns};
 pub use provenance::{FitRecord, renew_provenance};
 

@@ -66,6 +66,8 @@ pub struct Model {
     pub laws: Vec<&'static dyn Effect>,
     /// Base parameters to refit along with every candidate effect.
     pub free: Vec<ParameterPath>,
+    /// Values that a fit keeps from low to high, within what is possible: the user knows so much.
+    pub bounds: Vec<(ParameterPath, (f64, f64))>,
     /// How this rig's logs name and scale their columns.
     pub log: LogColumns,
 }

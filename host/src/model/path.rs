@@ -116,9 +116,19 @@ impl ParameterPath {
         place.map(|place| *place = value).is_some()
     }
 
+    /// Lowest and highest value that a fit may give it: what is possible, within what the model's
+    /// `[fit.bounds]` allow.
+    pub fn bounds(&self, model: &Model) -> (f64, f64) {
+        let possible = self.possible();
+        let own = model.bounds.iter().find(|(path, _)| path == self);
+        own.map_or(possible, |(_, (low, high))| {
+            (possible.0.max(*low), possible.1.min(*high))
+        })
+    }
+
     /// Lowest and highest possible value: the bounds of an effect's parameter, else what is
     /// physical.
-    pub fn bounds(&self, _model: &Model) -> (f64, f64) {
+    pub fn possible(&self) -> (f64, f64) {
         match *self {
             ParameterPath::Link { field, .. } => field.bounds(),
             ParameterPath::Joint { .. } => POSITIVE,

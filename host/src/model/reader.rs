@@ -198,15 +198,27 @@ impl<'a> Table<'a> {
 
     /// The numbers of the list under `key`, row by row: a list of numbers, or of such lists.
     pub fn rows(&self, key: &str) -> Result<Option<Vec<Vec<f64>>>> {
-        let one = |value: &Value| value.as_float().or(value.as_integer().map(|it| it as f64));
         let numbers =
-            |value: &Value| -> Option<Vec<f64>> { value.as_array()?.iter().map(one).collect() };
+            |value: &Value| -> Option<Vec<f64>> { value.as_array()?.iter().map(number).collect() };
         let rows = |item: &Item| {
             let value = item.as_value()?;
             let row = numbers(value).map(|row| vec![row]);
             row.or_else(|| value.as_array()?.iter().map(numbers).collect())
         };
         self.get(key, "a list of numbers, or of such lists", rows)
+    }
+
+    /// The two numbers under `key`, the first one `-inf` and the second one `inf` at most.
+    pub fn pair(&self, key: &str) -> Result<Option<(f64, f64)>> {
+        self.get(key, "two numbers, as `[0.1, 0.2]`", |item| {
+            let array = item.as_array().filter(|array| array.len() == 2)?;
+            Some((number(array.get(0)?)?, number(array.get(1)?)?))
+        })
+    }
+
+    /// Its keys, in the file's order.
+    pub fn keys(&self) -> Vec<&'a str> {
+        self.items.iter().map(|(key, _)| key).collect()
     }
 
     /// Whether the item under `key` is a list.
@@ -298,7 +310,8 @@ impl<'a> Table<'a> {
         })
     }
 
-    fn key_span(&self, key: &str) -> Option<Range<usize>> {
+    /// Where its key stands.
+    pub fn key_span(&self, key: &str) -> Option<Range<usize>> {
         let (key, _) = self.items.get_key_value(key)?;
         key.span().or_else(|| self.span.clone())
     }
@@ -310,4 +323,10 @@ impl<'a> Table<'a> {
             false => key.to_string(),
         }
     }
+}
+
+/// A number, whole or not.
+fn number(value: &Value) -> Option<f64> {
+    let whole = || value.as_integer().map(|integer| integer as f64);
+    value.as_float().or_else(whole)
 }

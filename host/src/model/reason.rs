@@ -167,6 +167,30 @@ pub enum ModelReason {
         /// Its address.
         path: String,
     },
+    /// Bounds that leave no room.
+    #[error("from {low} to {high} `{path}` has no possible value")]
+    NoBounds {
+        /// Address of the value.
+        path: String,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
+        /// Lowest and highest possible value.
+        possible: (f64, f64),
+    },
+    /// A value outside the bounds that it is to be fitted in.
+    #[error("`{path}` = {value} lies outside its bounds, {low} to {high}")]
+    OutsideBounds {
+        /// Address of the value.
+        path: String,
+        /// The model's value.
+        value: f64,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
+    },
 }
 
 use ModelReason::*;
@@ -229,6 +253,13 @@ impl Reason for ModelReason {
             FreeAbsent { .. } => "add its link, drive or effect, or remove it here",
             FreeInfinite { .. } => "give it a value to start from",
             FreeTwice { .. } => "remove one",
+            NoBounds {
+                possible: (low, high),
+                ..
+            } => {
+                return format!("write the lower one first; possible is {low} to {high}").into();
+            }
+            OutsideBounds { .. } => "a fit begins at the value: move it inside, or widen them",
         })
     }
 }

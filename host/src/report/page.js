@@ -202,6 +202,7 @@
   for (const code of document.querySelectorAll("code.command")) {
     const said = button("Copy", "Copy the command", () => copy(code, said));
     said.className = "copy";
-    code.after(said);
+    // In a block it floats beside the first line, which begins after it.
+    if (code.parentElement.tagName === "PRE") code.before(said); else code.after(said);
   }
 })();

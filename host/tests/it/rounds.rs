@@ -165,7 +165,7 @@ fn a_wrong_value_is_named_before_any_missing_effect() {
     );
     // The page shows what it would mend.
     let page = bench.get("page.html");
-    assert!(page.contains("with viscous@1.coefficient_nm_s_rad corrected"));
+    assert!(page.contains("with another value of viscous friction at joint 1"));
     // What is printed to mend it does.
     let fit = data["next"][0]
         .as_str()

@@ -1,7 +1,11 @@
-//! A headless Chromium, driven over its DevTools protocol: what is clicked, typed, seen. Tests and
-//! measurements of the lab use it. What goes wrong ends in a panic: there is no test without it.
+//! A headless Chromium, driven over its DevTools protocol: what is clicked, typed, seen; and a
+//! running lab, asked as its pages ask it, without a browser. Tests and measurements of the lab use
+//! them. What goes wrong ends in a panic: there is no test without it.
 
+mod lab;
 mod look;
+
+pub use lab::{LabServer, PATIENCE, Response};
 
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader};
@@ -13,8 +17,8 @@ use tempfile::TempDir;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
-/// Longer than anything here takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(240);
+/// Longer than anything a browser does takes on a busy machine.
+const BROWSER_PATIENCE: Duration = Duration::from_secs(240);
 
 /// Between two questions to a page that is not there yet.
 const POLL: Duration = Duration::from_millis(40);
@@ -99,7 +103,7 @@ impl Browser {
         std::thread::spawn(move || lines.for_each(drop));
         let (socket, _) = tungstenite::connect(address.expect("it listens")).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
-            stream.set_read_timeout(Some(PATIENCE)).unwrap();
+            stream.set_read_timeout(Some(BROWSER_PATIENCE)).unwrap();
         }
         let mut browser = Browser {
             child,
@@ -175,7 +179,7 @@ impl Browser {
             match self.try_call("Runtime.evaluate", asked.clone()) {
                 Ok(answer) => return answer["result"]["value"].clone(),
                 Err(error) => assert!(
-                    has_left(&error) && begun.elapsed() < PATIENCE,
+                    has_left(&error) && begun.elapsed() < BROWSER_PATIENCE,
                     "{expression}: {error}"
                 ),
             }
@@ -187,9 +191,9 @@ impl Browser {
     pub fn until(&mut self, expression: &str) {
         let begun = Instant::now();
         while self.value(&format!("Boolean({expression})")) != json!(true) {
-            if begun.elapsed() > PATIENCE {
+            if begun.elapsed() > BROWSER_PATIENCE {
                 let message = self.value("document.getElementById('message')?.textContent");
-                panic!("not in {PATIENCE:?}: {expression}; the page says {message}");
+                panic!("not in {BROWSER_PATIENCE:?}: {expression}; the page says {message}");
             }
             std::thread::sleep(POLL);
         }
@@ -203,8 +207,8 @@ impl Browser {
                 return number;
             }
             assert!(
-                begun.elapsed() < PATIENCE,
-                "no number in {PATIENCE:?}: {expression}"
+                begun.elapsed() < BROWSER_PATIENCE,
+                "no number in {BROWSER_PATIENCE:?}: {expression}"
             );
             std::thread::sleep(POLL);
         }

@@ -1,58 +1,24 @@
 //! The path from a log to a better model, by the program's commands.
 
+use super::judge::{End, Explanation, Judged, Walk};
 use super::rig::DrawnRig;
 use super::simulation::record;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// How a walk ended.
-#[derive(Debug, Clone, PartialEq)]
-pub enum End {
-    /// The hidden effect is in the verdict's set, or one of those that it leaves open; or another
-    /// value of it, where the first model holds it.
-    Found,
-    /// The first model holds it already, estimated from the log, and nothing else is missing.
-    InFirstModel,
-    /// The verdict is another; its summary.
-    Other(String),
-    /// A command refused the log, or asked for another unit; what it said.
-    Refused(String),
-}
-
-/// A walk with what it took.
-#[derive(Debug, Clone)]
-pub struct Walk {
-    /// How it ended.
-    pub end: End,
-    /// The diagnosis' verdict, where one was reached.
-    pub verdict: String,
-    /// Error of the first model on held-out motion, mrad, and what was left of it by `add`, where
-    /// something was added.
-    pub error_mrad: [Option<f64>; 2],
-}
-
 /// Walks from the rig's logs, written to `folder`, to a better model; `within` limits the
 /// diagnosis.
 pub fn walk(program: &Path, rig: &DrawnRig, folder: &Path, within: &str) -> Result<Walk, String> {
-    let logs = ["a.csv", "b.csv", "c.csv"];
-    for (index, name) in logs.iter().enumerate() {
-        let text = rig.names.csv(&record(rig, index));
-        std::fs::write(folder.join(name), text).map_err(|error| error.to_string())?;
-    }
-    let ended = |end: End| Walk {
-        end,
-        verdict: String::new(),
-        error_mrad: [None; 2],
-    };
+    write_logs(rig, folder)?;
     let run = |words: &[&str]| command(program, folder, words);
     let begun = run(&["init", "a.csv", "-o", "arm.toml"])?;
     if begun.code != 0 {
-        return Ok(ended(End::Refused(begun.said)));
+        return Ok(Walk::ended(End::Refused(begun.said)));
     }
     let checked = run(&["log", "check", "arm.toml", "a.csv", "b.csv", "c.csv"])?;
     if checked.code != 0 {
-        return Ok(ended(End::Refused(checked.said)));
+        return Ok(Walk::ended(End::Refused(checked.said)));
     }
     let diagnose = [
         "diagnose",
@@ -66,16 +32,13 @@ pub fn walk(program: &Path, rig: &DrawnRig, folder: &Path, within: &str) -> Resu
     let diagnosed = run(&[&diagnose[..], &["--within", within]].concat())?;
     let diagnosis: Value = serde_json::from_str(&diagnosed.data)
         .map_err(|_| format!("diagnose: exit {}: {}", diagnosed.code, diagnosed.said))?;
-    let verdict = diagnosis["verdict"].as_str().unwrap_or("").to_string();
+    let judged = judged(&diagnosis);
+    let mrad = |key: &str| diagnosis["error"][key].as_f64().map(|rad| 1e3 * rad);
     let mut walk = Walk {
-        end: end(rig, &diagnosis, &first_model(folder)),
-        error_mrad: [
-            diagnosis["error"]["before_rad"]
-                .as_f64()
-                .map(|rad| 1e3 * rad),
-            None,
-        ],
-        verdict,
+        end: judged.end(rig, &first_model(folder)),
+        error_mrad: [mrad("before_rad"), None],
+        floor_mrad: mrad("floor_rad"),
+        verdict: judged.verdict,
     };
     let added = addresses(&diagnosis["effects"]);
     if walk.end == End::Found && !added.is_empty() {
@@ -101,33 +64,41 @@ pub fn walk(program: &Path, rig: &DrawnRig, folder: &Path, within: &str) -> Resu
     Ok(walk)
 }
 
+/// The rig's logs, of which the last one is to judge.
+pub(super) const LOGS: [&str; 3] = ["a.csv", "b.csv", "c.csv"];
+
+/// Writes the rig's logs as its recorder names and writes them.
+pub(super) fn write_logs(rig: &DrawnRig, folder: &Path) -> Result<(), String> {
+    for (index, name) in LOGS.iter().enumerate() {
+        let text = rig.names.csv(&record(rig, index));
+        std::fs::write(folder.join(name), text).map_err(|error| error.to_string())?;
+    }
+    Ok(())
+}
+
 fn first_model(folder: &Path) -> String {
     std::fs::read_to_string(folder.join("arm.toml")).unwrap_or_default()
 }
 
-fn end(rig: &DrawnRig, diagnosis: &Value, first_model: &str) -> End {
-    let ids = rig.hidden.ids();
-    let holds = |set: &Value| {
-        let effects = set["effects"].as_array().into_iter().flatten();
-        let mut kinds = effects.filter_map(|effect| effect["kind"].as_str());
-        let values = set["wrong_values"].as_array().into_iter().flatten();
-        let mut values = values.filter_map(|value| value["path"].as_str());
-        let is_hidden = |path: &str| ids.iter().any(|id| path.starts_with(&format!("{id}@")));
-        let names_none = set["effects"].as_array().is_none_or(Vec::is_empty);
-        kinds.any(|kind| ids.contains(&kind)) || names_none && values.any(is_hidden)
-    };
+/// What the command line's diagnosis says.
+fn judged(diagnosis: &Value) -> Judged {
     let others = diagnosis["alternatives"].as_array().into_iter().flatten();
-    let sets = || std::iter::once(diagnosis).chain(others.clone());
-    let verdict = diagnosis["verdict"].as_str().unwrap_or("");
-    let said = || diagnosis["summary"].to_string();
-    let in_model = ids
-        .iter()
-        .any(|id| first_model.contains(&format!("kind = \"{id}\"")));
-    match verdict {
-        "unfit" => End::Refused(said()),
-        "named" | "ambiguous" if sets().any(holds) => End::Found,
-        "nominal" | "adequate" | "wrong_value" if in_model => End::InFirstModel,
-        _ => End::Other(said()),
+    let values = |set: &Value| {
+        let values = set["wrong_values"].as_array().into_iter().flatten();
+        let values = values.filter_map(|value| value["path"].as_str());
+        values.map(String::from).collect()
+    };
+    let explanation = |set: &Value| Explanation {
+        effects: addresses(&set["effects"]),
+        values: values(set),
+    };
+    Judged {
+        verdict: diagnosis["verdict"].as_str().unwrap_or("").to_string(),
+        summary: diagnosis["summary"].to_string(),
+        explanations: std::iter::once(diagnosis)
+            .chain(others)
+            .map(explanation)
+            .collect(),
     }
 }
 

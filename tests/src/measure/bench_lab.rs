@@ -3,7 +3,6 @@
 
 mod person;
 mod rig;
-mod served;
 mod step;
 
 use super::page::Page;

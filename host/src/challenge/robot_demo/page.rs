@@ -7,8 +7,10 @@ use crate::output::plot::{Chart, Curve, Tone};
 use crate::report::page::{Section, document, table};
 use maud::{Markup, html};
 
-/// Two pictures beside each other, or below each other on a narrow page.
-const PAIR: &str = "display:grid;gap:1rem;grid-template-columns:repeat(auto-fit,minmax(20rem,1fr))";
+/// Two pictures beside each other, their axes at one height however long their titles are, or below
+/// each other on a narrow page.
+const PAIR: &str = "display:grid;gap:1rem;align-items:end;\
+                    grid-template-columns:repeat(auto-fit,minmax(20rem,1fr))";
 
 /// The page, which needs nothing but itself.
 pub fn html(demo: &RobotDemo) -> String {

@@ -74,6 +74,15 @@ fill("#horizons-wanted", "horizons", "It came to no end.").catch(() => {});
 fill("#whole-wanted", "whole", "It came to no end.").catch(() => {});
 fill("#findings-wanted", "findings", "The check came to no end.").catch(() => {});
 
+// Bounds that were changed, both ends of each value; an empty end is free.
+const boundsOf = (form) => {
+  const ends = (path, end) => form.querySelector(`[data-path="${path}"][data-bound=${end}]`);
+  const changed = $$("[data-bound]", form).filter((field) => field.value !== (field.dataset.was ??
+    ""));
+  const number = ({ value }) => value === "" ? null : Number(value);
+  return [...new Set(changed.map((field) => field.dataset.path))].map((path) => ({ path,
+    low: number(ends(path, "low")), high: number(ends(path, "high")) }));
+};
 // A form sends its fields as JSON; `data-number` ones as numbers.
 for (const form of $$("form[data-send]")) {
   form.addEventListener("submit", async (event) => {
@@ -89,6 +98,7 @@ for (const form of $$("form[data-send]")) {
     if (form.dataset.names !== undefined) {
       data.names = $$("[data-name]:checked", form).map((box) => box.dataset.name).join("+");
       if (!data.names) { say("Tick at least one value."); return; }
+      data.bounds = boundsOf(form);
     }
     if (event.submitter?.name) data[event.submitter.name] = event.submitter.value;
     say("");
@@ -103,7 +113,29 @@ for (const form of $$("form[data-send]")) {
 for (const field of $$("[data-submit]")) field.addEventListener("change", () =>
   field.form.requestSubmit());
 
-// Progress of long work.
+// Progress of long work: how far it is, how long it takes at most, the best so far.
+const tell = (box, { what, done, total, best, left_s, ending }) => {
+  const bar = $("progress", box);
+  if (total > 0) { bar.max = total; bar.value = done; } else bar.removeAttribute("value");
+  $("#what", box).textContent = ending === "stopped" ? "Stopping …" : ending === "accepted" ?
+    "Judging what was found …" : total > 0 ? `${what}, ${Math.floor(100 * done / total)} %` : what;
+  $("#left", box).textContent = left_s === null || ending ? "" : left_s < 90 ?
+    `at most ${Math.ceil(left_s)} s more` : `at most ${Math.ceil(left_s / 60)} min more`;
+  $("#stop", box).disabled = ending === "stopped";
+  const shown = $("#best", box);
+  if (!shown) return;
+  shown.hidden = !best;
+  $("#accept", box).disabled = Boolean(ending);
+  if (!best) return;
+  const unit = { error_unit: box.dataset.errorUnit, error_per_si: Number(box.dataset.errorPerSi) };
+  for (const name of ["before", "error", "floor"])
+    $(`#best-${name}`, box).textContent = inWords(best[`${name}_rad`], unit);
+  $("#best-name", box).textContent = best.name;
+  const [, drawn] = $$(".bar", shown);
+  const share = (value) => Math.min(1000 * value / best.before_rad, 1000).toFixed(1);
+  $(".area", drawn).setAttribute("width", share(best.error_rad));
+  for (const end of ["x1", "x2"]) $(".mark", drawn).setAttribute(end, share(best.floor_rad));
+};
 let events = null;
 const watch = () => {
   const box = $("#progress");
@@ -115,23 +147,20 @@ const watch = () => {
     box.hidden = state.state !== "running";
     if (state.state === "running") {
       ran = true;
-      const bar = $("progress", box);
-      if (state.total > 0) { bar.max = state.total; bar.value = state.done;
-        } else bar.removeAttribute("value");
-      $("#what", box).textContent = state.total > 0 ?
-        `${state.what}: ${state.done} of ${state.total}` : state.what;
+      tell(box, state);
       for (const button of $$("[data-work]")) button.disabled = true;
     } else if (ran) {
       events.close(); events = null;
       for (const button of $$("[data-work]")) button.disabled = false;
-      if (state.state === "done") go({ go: location.pathname });
+      if (state.state === "done") go({ go: state.page ? `${base}/${state.page}` : location.pathname });
       else if (state.state === "failed") say(`${state.error}. ${state.remedy}.`);
       else say("Stopped. Nothing was changed.", false);
     }
   };
 };
 if (document.body.dataset.running !== undefined) watch();
-$("#stop")?.addEventListener("click", () => send("stop").catch((error) => say(error.message)));
+for (const end of ["stop", "accept"]) $(`#${end}`)?.addEventListener("click", () =>
+  send(end).catch((error) => say(error.message)));
 
 // Logs that are dropped or chosen.
 const MOST = Number($("#files")?.dataset.most ?? 0);

@@ -1,5 +1,4 @@
 // The residual by itself: how it remembers, and at which frequencies it lies.
-import { element } from "./curves.js";
 import { $ } from "./lab.js";
 import { onLook, scatter } from "./paint.js";
 
@@ -85,8 +84,8 @@ const draw = () => {
   scatter($("#spectrum"), hz, density, { xLabel: "frequency, Hz", joined: true });
   $("#acf-name").textContent = `Autocorrelation of ${motion}; shaded: 95 % of white noise`;
   const loudest = hz[density.indexOf(Math.max(...density))];
-  $("#spectrum-name").replaceChildren(`Spectrum, ${unit}/√Hz`, ...(loudest ? [element("span", {
-    className: "note", textContent: `, most at ${Number(loudest.toPrecision(3))} Hz` })] : []));
+  $("#spectrum-name").textContent = `Spectrum, ${unit}/√Hz` + (loudest ?
+    `; most at ${Number(loudest.toPrecision(3))} Hz` : "");
 };
 export const showResidual = (residual) => { shown = residual; draw(); };
 onLook(draw);

@@ -203,7 +203,7 @@ fn signals(signals: &[SignalError], evaluation: &SessionEvaluation) -> Markup {
                 td.number { (short(signal.fit_percent)) " %" }
                 td.number { (words(signal, signal.floor)) }
                 td.number { (percent(signal.share_above_floor)) }
-                td { @for test in &signal.tests {
+                td.tests-of-residual { @for test in &signal.tests {
                     span class=(if test.passed { "good" } else { "bad" }) title=(test.meaning) {
                         (test.name) @if test.passed { " passed" } @else { " not passed" } ". "
                     }

@@ -1,7 +1,7 @@
 //! The sessions to choose from.
 
 use super::frame;
-use crate::lab::session::{SavedSession, SessionStore};
+use crate::lab::session::{LabSession, SavedSession, SessionStore};
 use maud::{Markup, html};
 
 /// The page.
@@ -15,18 +15,8 @@ pub fn sessions(store: &SessionStore) -> Markup {
             div #message role="alert" {}
             div.scroll tabindex="0" { table {
                 thead { tr { th { "Session" } th { "Model" } th { "Logs" } th { "Steps" } th {
-                    "Challenge" } } }
-                tbody { @for session in &sessions {
-                    @let saved = session.saved();
-                    tr {
-                        td { a href={ "/s/" (session.number) "/data" } {
-                            "Session " (session.number) } }
-                        td { (name(&saved)) }
-                        td { (logs(&saved)) }
-                        td { (saved.steps.len().saturating_sub(1)) }
-                        td { (challenge(&saved)) }
-                    }
-                } }
+                    "Challenge" } th { "Name" } th { "Delete" } } }
+                tbody { @for session in &sessions { (row(session)) } }
             } }
             form.row data-send="/sessions" { button.main { "New session" } }
         }
@@ -35,7 +25,46 @@ pub fn sessions(store: &SessionStore) -> Markup {
     frame::bare("Sessions - handstand lab", &body)
 }
 
-fn name(saved: &SavedSession) -> String {
+fn row(session: &LabSession) -> Markup {
+    let saved = session.saved();
+    let number = session.number;
+    html! {
+        tr {
+            td { a href={ "/s/" (number) "/data" } { (session_name(number, &saved)) } }
+            td { (model_name(&saved)) }
+            td { (logs(&saved)) }
+            td { (saved.steps.len().saturating_sub(1)) }
+            td { (challenge(&saved)) }
+            td {
+                form.small-form.name-form data-send={ "/s/" (number) "/name" } {
+                    input name="name" value=(saved.name) placeholder="no name" maxlength="80"
+                        aria-label={ "Name of session " (number) };
+                    button { "Keep name" }
+                }
+            }
+            td {
+                details {
+                    summary { "Delete" }
+                    form.small-form data-send="/sessions/delete" {
+                        input type="hidden" name="number" value=(number) data-number;
+                        p.note { "Its models and its copies of the logs are gone for good." }
+                        button { "Delete session " (number) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// "Session 3", with its name where it has one.
+pub(super) fn session_name(number: u32, saved: &SavedSession) -> String {
+    match saved.name.as_str() {
+        "" => format!("Session {number}"),
+        name => format!("Session {number}: {name}"),
+    }
+}
+
+fn model_name(saved: &SavedSession) -> String {
     let model = saved
         .step()
         .map(|step| step.toml.parse::<toml_edit::DocumentMut>());

@@ -1,5 +1,6 @@
 //! What stands around every page: where one is, the model in force, its error.
 
+use super::enter::session_name;
 use super::in_milli;
 use crate::lab::session::{LabSession, SavedSession, SessionEvaluation, listed, model_sha256};
 use maud::{DOCTYPE, Markup, html};
@@ -96,7 +97,7 @@ pub fn page(
                 script type="module" src={ "/assets/" (script) } {}
             }
             body data-session=(number) data-running[running] data-model=(shown) {
-                (top(number, here))
+                (top(number, here, saved))
                 (status(saved, evaluation))
                 div #message role="alert" {}
                 main { (body) }
@@ -106,7 +107,7 @@ pub fn page(
     }
 }
 
-fn top(number: u32, here: &str) -> Markup {
+fn top(number: u32, here: &str, saved: &SavedSession) -> Markup {
     html! {
         div.bar-top role="banner" {
             a.brand href={ "/s/" (number) "/data" } { "handstand lab" }
@@ -116,7 +117,7 @@ fn top(number: u32, here: &str) -> Markup {
                     a href={ "/s/" (number) "/" (address) } aria-current=[current] { (name) }
                 }
             }
-            a.session href="/sessions" { "Session " (number) }
+            a.session href="/sessions" { (session_name(number, saved)) }
         }
     }
 }

@@ -3,15 +3,16 @@
 use super::compare::command;
 use super::learn_card::card;
 use super::learn_steps::steps;
+use super::progress::progress;
 use super::what_if::own_paths;
 use super::{evaluated, frame};
 use crate::fitting::Horizon;
 use crate::lab::reply::LabError;
 use crate::lab::session::{
-    ChosenWindow, LabSession, SavedDiagnosis, SavedProposal, SavedSession, SessionEvaluation, over,
-    value_name,
+    CardRole, ChosenWindow, LabSession, SavedCard, SavedDiagnosis, SavedProposal, SavedSession,
+    SessionEvaluation, over, value_name,
 };
-use crate::model::Model;
+use crate::model::{Model, ParameterPath};
 use crate::output::number::{NONE, exact, short, unit};
 use maud::{Markup, html};
 
@@ -48,7 +49,7 @@ fn shown(
         section {
             h2 { "What is missing?" }
             (ask(saved, evaluation))
-            @if let Some(diagnosis) = &saved.diagnosis { (said(saved, diagnosis, evaluation)) }
+            @if let Some(diagnosis) = &saved.diagnosis { (said(session.number, saved, diagnosis, evaluation)) }
             @if let Some(proposal) = saved.proposal() { (proposed(session.number, proposal)) }
         }
         section {
@@ -113,10 +114,7 @@ fn ask(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
     let model = &evaluation.run.model;
     let proposes = !model.driven_joints().is_empty() && !model.slides();
     html! {
-        div #progress hidden {
-            span #what {} progress aria-label="Progress" {}
-            button #stop type="button" { "Stop" }
-        }
+        (progress(Some(evaluation.shown_error())))
         div.row {
             form data-send="diagnose" {
                 button.main #diagnose data-work {
@@ -143,6 +141,7 @@ fn ask(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
 }
 
 fn said(
+    number: u32,
     saved: &SavedSession,
     diagnosis: &SavedDiagnosis,
     evaluation: &SessionEvaluation,
@@ -178,6 +177,7 @@ fn said(
                     (over(Horizon::from_seconds(diagnosis.horizon_s))) }
             }
         }
+        p { a.button href={ "/s/" (number) "/download/report.html" } { "Save the report" } }
         @if !current { p.note {
             "The model in force is another one by now; diagnose again to learn about it." } }
         @if next().next().is_some() {
@@ -188,14 +188,37 @@ fn said(
             h3 { "Be wary" }
             ul { @for line in &diagnosis.warnings { li { (line) } } }
         }
-        @if !diagnosis.cards.is_empty() {
+        (cards(saved, diagnosis, evaluation, current))
+    }
+}
+
+/// The explanations; those that are ruled out are folded away.
+fn cards(
+    saved: &SavedSession,
+    diagnosis: &SavedDiagnosis,
+    evaluation: &SessionEvaluation,
+    current: bool,
+) -> Markup {
+    let is_open = |each: &&SavedCard| each.role != CardRole::RuledOut;
+    let (open, out): (Vec<_>, Vec<_>) = diagnosis.cards.iter().partition(is_open);
+    let drawn = |each: &SavedCard| card(each, saved, evaluation, current);
+    html! {
+        @if !open.is_empty() {
             h3 { "Explanations, the best first" }
-            div.cards { @for each in &diagnosis.cards { (card(each, saved, evaluation, current)) } }
+            div.cards { @for each in open { (drawn(each)) } }
+        }
+        @if !out.is_empty() {
+            details.folded #ruled-out {
+                summary { "Ruled out: " (out.len())
+                    @if out.len() == 1 { " explanation" } @else { " explanations, the nearest first" } }
+                div.cards { @for each in out { (drawn(each)) } }
+            }
         }
     }
 }
 
-/// Which values to fit, each with what it is now and the bounds of what is possible.
+/// Which values to fit, each with what it is now, what is possible, and the bounds that it is kept
+/// in.
 fn fit_what(model: &Model) -> Markup {
     let paths = own_paths(model);
     let values = paths
@@ -208,22 +231,41 @@ fn fit_what(model: &Model) -> Markup {
             form data-send="fit" data-names {
                 div.scroll tabindex="0" { table {
                     thead { tr { th { "Fit" } th { "Value" } th.number { "Now" } th { "Unit" }
-                        th.number { "Bounds" } } }
-                    tbody { @for (path, value) in values {
-                        @let (low, high) = path.bounds(model);
-                        @let address = path.to_string();
-                        tr {
-                            td { input type="checkbox" id={ "fit-" (address) } data-name=(address)
-                                checked[model.free.contains(path)]; }
-                            td { label for={ "fit-" (address) } { (value_name(&address)) } }
-                            td.number { (exact(value)) }
-                            td { (unit(path.unit())) }
-                            td.number { (short(low)) " to " (short(high)) }
-                        }
-                    } }
+                        th.number { "At least" } th.number { "At most" } } }
+                    tbody { @for (path, value) in values { (fit_row(path, value, model)) } }
                 } }
+                p.note { "Bounds are written into the model: later fits and diagnoses heed them. Empty, \
+                          a value may be whatever is possible, which stands there in grey." }
                 div.row { button data-work { "Fit what is ticked" } }
             }
+        }
+    }
+}
+
+/// A value that may be fitted.
+fn fit_row(path: &ParameterPath, value: f64, model: &Model) -> Markup {
+    let address = path.to_string();
+    let (lowest, highest) = path.possible();
+    let own = model.bounds.iter().find(|(own, _)| own == path);
+    let [low, high] = [own.map(|(_, ends)| ends.0), own.map(|(_, ends)| ends.1)]
+        .map(|end| end.filter(|end| end.is_finite()));
+    let bound = |end: &str, own: Option<f64>, possible: f64| {
+        let said = value_name(&address);
+        html! {
+            td.number { input type="number" step="any" data-bound=(end) data-path=(address)
+                data-was=[own] value=[own] placeholder=(short(possible))
+                aria-label={ (said) " at " (if end == "low" { "least" } else { "most" }) }; }
+        }
+    };
+    html! {
+        tr {
+            td { input type="checkbox" id={ "fit-" (address) } data-name=(address)
+                checked[model.free.contains(path)]; }
+            td { label for={ "fit-" (address) } { (value_name(&address)) } }
+            td.number { (exact(value)) }
+            td { (unit(path.unit())) }
+            (bound("low", low, lowest))
+            (bound("high", high, highest))
         }
     }
 }
@@ -259,5 +301,11 @@ fn commands(saved: &SavedSession) -> String {
         lines.extend(next.map(|(_, command)| format!("handstand {command}")));
     }
     lines.push(saved.compare_command());
+    let mut said = Vec::new();
+    lines.retain(|line| {
+        let is_new = !said.contains(line);
+        said.push(line.clone());
+        is_new
+    });
     lines.join("\n")
 }

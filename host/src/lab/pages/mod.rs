@@ -11,6 +11,7 @@ pub(super) mod learn;
 pub(super) mod learn_card;
 pub(super) mod learn_steps;
 mod new_model;
+mod progress;
 pub(super) mod report;
 pub(super) mod robot;
 mod robot_live;

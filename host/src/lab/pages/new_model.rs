@@ -1,5 +1,6 @@
 //! The form of a new model, filled with what the first log tells, as `handstand init` guesses it.
 
+use super::progress::progress;
 use crate::lab::session::{LabSession, SavedSession};
 use crate::log::init::Draft;
 use maud::{Markup, PreEscaped, html};
@@ -67,8 +68,9 @@ fn guessed(draft: &Draft) -> Markup {
         form #from-log data-send="model-from-log" {
             p.lead { "Friction, masses or the motor's figures, and the zero can be estimated from \
                       the log: a fit of some seconds. What you know of the rig comes later, or below." }
-            div.row { button.main { "Estimate a model from the log" } }
+            div.row { button.main data-work { "Estimate a model from the log" } }
         }
+        (progress(None))
         p.lead { "Or put in what you know: the form is filled with what the columns tell; lengths, \
                   masses and the motor are guesses." }
         details {

@@ -5,12 +5,16 @@ use crate::lab::guard::cookie;
 use crate::lab::pages::{enter as pages, frame};
 use crate::lab::reply::{Answer, LabError, data, go, page, refusal};
 use crate::lab::server::LabState;
-use axum::extract::{Query, State};
+use axum::Json;
+use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::Response;
 use serde::Deserialize;
 use serde_json::json;
 use std::sync::Arc;
+
+/// Longest name of a session, characters.
+const LONGEST_NAME: usize = 80;
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Entrance {
@@ -81,4 +85,38 @@ pub(super) async fn begin(State(lab): State<Arc<LabState>>) -> Answer {
         &new.number.to_string(),
     );
     Ok(response)
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Name {
+    name: String,
+}
+
+/// Names a session; nothing takes its name away.
+pub(super) async fn name(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    Json(name): Json<Name>,
+) -> Answer {
+    let session = session(&lab, number)?;
+    let name: String = name.name.trim().chars().take(LONGEST_NAME).collect();
+    blocking(move || {
+        Ok(session.change(|saved| {
+            saved.name = name;
+            Ok(())
+        })?)
+    })
+    .await?;
+    Ok(data(&json!({ "go": "/sessions" })))
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Chosen {
+    number: u32,
+}
+
+/// Deletes a session, its models and its copies of the logs.
+pub(super) async fn delete(State(lab): State<Arc<LabState>>, Json(chosen): Json<Chosen>) -> Answer {
+    blocking(move || Ok(lab.store.delete(chosen.number)?)).await?;
+    Ok(data(&json!({ "go": "/sessions" })))
 }

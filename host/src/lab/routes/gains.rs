@@ -122,7 +122,7 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
         "fixed": fixed,
         "margins": margins_json(figures.as_ref())["margins"],
         "omitted": omitted.map(|o| o.effect.info().title).collect::<Vec<_>>(),
-        "degrees": (0..model.link_count()).all(|joint| in_degrees(model, joint)),
+        "degrees": in_degrees(model),
         "response": {
             "time_s": response.time_s,
             "angle_rad": response.angle_rad,

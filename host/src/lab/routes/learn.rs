@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::lab::pages::learn as pages;
 use crate::lab::reply::{Answer, LabError, data as reply, page};
 use crate::lab::server::LabState;
-use crate::lab::session::{JobReport, LabSession, aside};
+use crate::lab::session::{ChosenBounds, Ending, JobReport, LabSession, aside, with_bounds};
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::response::sse::{Event, KeepAlive, Sse};
@@ -33,13 +33,25 @@ pub(super) async fn whole(State(lab): State<Arc<LabState>>, Path(number): Path<u
     blocking(move || Ok(page(aside(|| pages::whole(&session))))).await
 }
 
-/// Begins work that goes on after the answer.
+/// Begins work that goes on after the answer, and shows on the same page.
 pub(super) fn begin(
     lab: &LabState,
     number: u32,
     shown: &ShownModel,
     what: &str,
     work: impl FnOnce(&LabSession, &JobReport) -> Result<()> + Send + 'static,
+) -> Answer {
+    let work = |session: &LabSession, report: &JobReport| work(session, report).map(|()| None);
+    begin_and_go(lab, number, shown, what, work)
+}
+
+/// Begins work that goes on after the answer, and says on which page it shows.
+pub(super) fn begin_and_go(
+    lab: &LabState,
+    number: u32,
+    shown: &ShownModel,
+    what: &str,
+    work: impl FnOnce(&LabSession, &JobReport) -> Result<Option<&'static str>> + Send + 'static,
 ) -> Answer {
     let session = session(lab, number)?;
     shown.check(&session.saved())?;
@@ -67,6 +79,9 @@ pub(super) async fn diagnose(
 pub(super) struct Names {
     /// Addresses between `+`.
     names: String,
+    /// Bounds of values that are fitted.
+    #[serde(default)]
+    bounds: Vec<ChosenBounds>,
 }
 
 impl Names {
@@ -104,19 +119,34 @@ pub(super) async fn fit(
     Json(names): Json<Names>,
 ) -> Answer {
     let list = names.list();
+    let saved = session(&lab, number)?.saved();
+    // What is wrong with bounds is said beside them, before anything is fitted.
+    if let (Some(step), false) = (saved.step(), names.bounds.is_empty()) {
+        with_bounds(
+            &step.toml,
+            std::path::Path::new("model.toml"),
+            &names.bounds,
+        )?;
+    }
     begin(
         &lab,
         number,
         &shown,
         "fit of the values",
-        move |session, report| session.fit_values(report, &list),
+        move |session, report| session.fit_values(report, &list, &names.bounds),
     )
 }
 
-/// Stops what runs.
+/// Stops what runs: nothing of it is kept.
 pub(super) async fn stop(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
-    session(&lab, number)?.job.stop();
+    session(&lab, number)?.job.end(Ending::Stopped);
     Ok(reply(&json!({ "stopping": true })))
+}
+
+/// Ends a diagnosis with its best so far, which is judged.
+pub(super) async fn accept(State(lab): State<Arc<LabState>>, Path(number): Path<u32>) -> Answer {
+    session(&lab, number)?.job.end(Ending::Accepted);
+    Ok(reply(&json!({ "accepted": true })))
 }
 
 /// Tells how far the work is, as events.

@@ -1,6 +1,7 @@
 //! A model from the first log alone, or from the form, with the columns of that log and the
 //! friction that was proposed.
 
+use super::learn::begin_and_go;
 use super::shown_model::ShownModel;
 use super::{act_and_go, session};
 use crate::effects::named;
@@ -54,22 +55,18 @@ pub(super) async fn make(
     .await
 }
 
-/// Makes a model from the first log alone, as `handstand init` does, and goes on to where it is
-/// compared.
+/// Begins to make a model from the first log alone, as `handstand init` does, and goes on to where
+/// it is compared.
 pub(super) async fn make_from_log(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
     shown: ShownModel,
 ) -> Answer {
-    session(&lab, number)?;
-    act_and_go(lab, number, move |session, saved| {
-        shown.check(saved)?;
-        let draft = session.estimated(saved)?;
-        let draft = draft.ok_or(LabError::NotFound("no log that tells of joints"))?;
-        session.begin_model("estimated from the log", &draft.toml()?)?;
-        Ok(page_after(session))
+    let what = "model from the log";
+    begin_and_go(&lab, number, &shown, what, |session, report| {
+        session.begin_estimated(report)?;
+        Ok(Some(page_after(session)))
     })
-    .await
 }
 
 /// Where the model reads a log, it is compared; else what is wrong is said beside the logs.

@@ -1,8 +1,10 @@
 //! A model that comes as a file: one of this program's, or another simulator's.
 
 use super::LabSession;
+use super::job::JobReport;
 use super::saved::{SavedSession, SavedStep};
-use crate::error::Result;
+use super::work::unchanged;
+use crate::error::{Error, Result};
 use crate::fitting::estimate;
 use crate::log::init::Draft;
 use crate::log::{LogRequest, RawLog};
@@ -58,17 +60,31 @@ impl LabSession {
         self.drafted(saved, drive).map(|(draft, _)| draft)
     }
 
-    /// The same with its guesses fitted to that log, as `handstand init` writes it; none where no
-    /// log tells anything.
+    /// The same with its guesses fitted to that log, as `handstand init` writes it.
+    fn estimated(&self, saved: &SavedSession, report: &JobReport) -> Result<Draft> {
+        let drafted = self.drafted(saved, None);
+        let (mut draft, request) = drafted.ok_or_else(|| {
+            Error::usage(
+                "no log tells of joints",
+                "bring a log with a column of time and one of angles",
+            )
+        })?;
+        estimate(&mut draft, &request, report.stop_switch(), &|p| {
+            report.hear(p);
+        })?;
+        Ok(draft)
+    }
+
+    /// Takes a model that is estimated from the first log as the first step.
     ///
     /// # Errors
-    /// Figures that make no model.
-    pub fn estimated(&self, saved: &SavedSession) -> Result<Option<Draft>> {
-        let Some((mut draft, request)) = self.drafted(saved, None) else {
-            return Ok(None);
-        };
-        estimate(&mut draft, &request)?;
-        Ok(Some(draft))
+    /// No log tells of joints; a session that was changed meanwhile.
+    pub fn begin_estimated(&self, report: &JobReport) -> Result<()> {
+        let begun = self.saved();
+        let toml = self.estimated(&begun, report)?.toml()?;
+        report.tell("the new model");
+        unchanged(&self.saved(), &begun)?;
+        self.begin_model("estimated from the log", &toml)
     }
 
     fn drafted(&self, saved: &SavedSession, drive: Option<&str>) -> Option<(Draft, LogRequest)> {

@@ -1,5 +1,8 @@
 //! A diagnosis as pages show it and sessions keep it: sentences, and a card for each explanation.
 
+use super::evaluation::ShownUnit;
+use super::names::value_name;
+use crate::diagnose::words::error_line;
 use crate::diagnose::{Alternative, Diagnosis, FittedEffect, RuledOut, Verdict, WrongValue};
 use crate::fitting::FittedValue;
 use crate::output::number::measured;
@@ -103,6 +106,16 @@ impl SavedDiagnosis {
     }
 }
 
+impl SavedDiagnosis {
+    /// Tells what becomes of the error in the unit in which people read it.
+    pub fn tell_in(&mut self, unit: ShownUnit, diagnosis: &Diagnosis) {
+        let own = error_line(diagnosis, (diagnosis.error.quantity.milli(), 1e3));
+        let shown = error_line(diagnosis, (unit.error_unit, unit.error_per_si));
+        let lines = self.summary.iter_mut().filter(|line| **line == own);
+        lines.for_each(|line| line.clone_from(&shown));
+    }
+}
+
 /// The verdict's name in JSON.
 fn verdict_name(verdict: Verdict) -> String {
     let name = serde_json::to_value(verdict).unwrap_or_default();
@@ -136,7 +149,7 @@ fn rival(rival: &Alternative, held_out: bool) -> SavedCard {
 fn explanation(effects: &[FittedEffect], wrong: &[WrongValue]) -> SavedCard {
     let text = |fitted: &FittedValue| {
         let value = measured(fitted.value, fitted.low, fitted.high, &fitted.unit);
-        format!("{} = {value}", fitted.path)
+        format!("{} {value}", value_name(&fitted.path))
     };
     let parameters = effects.iter().flat_map(|effect| &effect.parameters);
     let wrong_values = wrong.iter().map(|wrong| &wrong.fitted);

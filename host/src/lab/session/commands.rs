@@ -1,5 +1,6 @@
 //! The command lines that do what was done, to be typed in the session's folder.
 
+use super::ChosenBounds;
 use super::data::model_file;
 use super::saved::{SavedLog, SavedSession};
 use crate::diagnose::{quoted, quoted_logs};
@@ -73,12 +74,17 @@ impl SavedSession {
         )
     }
 
-    /// `handstand fit` of values of the present step.
-    pub fn fit_command(&self, values: &[String]) -> String {
-        let free: String = values
+    /// `handstand fit` of values of the present step, within bounds.
+    pub fn fit_command(&self, values: &[String], bounds: &[ChosenBounds]) -> String {
+        let free = values
             .iter()
-            .map(|path| format!(" --free {}", quoted(path)))
-            .collect();
+            .map(|path| format!(" --free {}", quoted(path)));
+        let bounds = bounds.iter().filter_map(|own| {
+            let (low, high) = own.ends()?;
+            let asked = format!("{}={low}..{high}", own.path);
+            Some(format!(" --bounds {}", quoted(&asked)))
+        });
+        let free: String = free.chain(bounds).collect();
         format!(
             "handstand fit {} {}{free}{} -o {}",
             model_file(self.current).display(),

@@ -6,7 +6,7 @@ use super::saved::{SavedLog, SavedSession};
 use crate::compare::{Comparison, FailingSamples, ModelRun};
 use crate::error::Result;
 use crate::fitting::{FitData, Horizon};
-use crate::model::{MeasuredSignal, Model};
+use crate::model::{JointColumns, MeasuredSignal, Model};
 use crate::output::number::{given, short};
 use serde::Serialize;
 use std::path::Path;
@@ -91,15 +91,13 @@ impl SessionEvaluation {
     pub fn shown(&self, joint: usize) -> ShownUnit {
         ShownUnit::of(
             self.run.data.signals[joint],
-            in_degrees(&self.run.model, joint),
+            self.run.model.log.joints[joint].in_degrees(),
         )
     }
 
     /// The unit in which people read the errors of all joints together.
     pub fn shown_error(&self) -> ShownUnit {
-        let model = &self.run.model;
-        let degrees = (0..model.link_count()).all(|joint| in_degrees(model, joint));
-        ShownUnit::of(self.quantity(), degrees)
+        ShownUnit::of_errors(self.quantity(), &self.run.model)
     }
 
     /// An error of all joints together as people read it.
@@ -140,6 +138,11 @@ pub struct ShownUnit {
 }
 
 impl ShownUnit {
+    /// The unit of the errors of all joints together.
+    pub fn of_errors(quantity: MeasuredSignal, model: &Model) -> ShownUnit {
+        ShownUnit::of(quantity, in_degrees(model))
+    }
+
     fn of(signal: MeasuredSignal, degrees: bool) -> ShownUnit {
         let unit = match signal {
             MeasuredSignal::Angle if degrees => "deg",
@@ -168,12 +171,9 @@ impl ShownUnit {
     }
 }
 
-/// Whether a joint's angle, or its speed where that is all there is, is logged in degrees.
-pub fn in_degrees(model: &Model, joint: usize) -> bool {
-    let log = &model.log.joints[joint];
-    let measured = log.position.as_ref().or(log.velocity.as_ref());
-    let first = measured.and_then(|mean| mean.columns().first());
-    first.is_some_and(|column| column.unit.name.starts_with("deg"))
+/// Whether all joints are logged in degrees.
+pub fn in_degrees(model: &Model) -> bool {
+    model.log.joints.iter().all(JointColumns::in_degrees)
 }
 
 /// Root-mean-square error over the joints whose errors count together, as the bars of a report

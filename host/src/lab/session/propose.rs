@@ -39,7 +39,7 @@ impl LabSession {
         }
         model.hinges_only("proposed motions are for servos that turn")?;
         let (of, diagnosis) = self.diagnosis_for(report, &begun, &view)?;
-        report.tell("motions", 0, 0);
+        report.tell("motions");
         let logs = self.log_set(&view);
         let split = logs.read(&model.log)?;
         let motions = [split.training, split.held_out].concat();

@@ -19,6 +19,9 @@ const FILE: &str = "session.json";
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SavedSession {
     version: u32,
+    /// What a person calls it; empty without a name.
+    #[serde(default)]
+    pub name: String,
     /// Logs, in the folder `logs` of the session.
     pub logs: Vec<SavedLog>,
     /// Models, from the first to the last that was made.
@@ -153,6 +156,7 @@ impl Default for SavedSession {
     fn default() -> Self {
         SavedSession {
             version: VERSION,
+            name: String::new(),
             logs: Vec::new(),
             steps: Vec::new(),
             current: 0,

@@ -1,6 +1,6 @@
 //! The sessions of one folder, each in a folder of its own.
 
-use super::{Given, LabSession};
+use super::{Ending, Given, LabSession};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -104,6 +104,19 @@ impl SessionStore {
         open.taken.insert(number);
         open.sessions.insert(number, session.clone());
         Ok(session)
+    }
+
+    /// Deletes a session with its folder; what runs in it is stopped.
+    ///
+    /// # Errors
+    /// There is no such session; the system's refusal.
+    pub fn delete(&self, number: u32) -> Result<()> {
+        let session = self.lock().sessions.remove(&number);
+        let session =
+            session.ok_or_else(|| Error::usage("there is no such session", "reload the page"))?;
+        session.job.end(Ending::Stopped);
+        let folder = session.folder();
+        std::fs::remove_dir_all(folder).map_err(|why| Error::file(folder, "remove", why))
     }
 
     /// A folder that nobody else has.

@@ -3,6 +3,7 @@
 use super::LabSession;
 use super::card::SavedDiagnosis;
 use super::data::model_file;
+use super::evaluation::ShownUnit;
 use super::job::JobReport;
 use super::kept::DiagnosedFiles;
 use super::names::{effect_name, listed, value_name};
@@ -15,6 +16,9 @@ use crate::fitting::{
     with_refitted,
 };
 use crate::model::Model;
+use crate::model::edit::set_bounds;
+use serde::Deserialize;
+use std::path::Path;
 use std::sync::PoisonError;
 
 impl LabSession {
@@ -62,6 +66,10 @@ impl LabSession {
         diagnosis: &Diagnosis,
     ) -> Result<()> {
         let mut said = SavedDiagnosis::of(diagnosis, begun.current);
+        if let Some(model) = self.model(begun)? {
+            let shown = ShownUnit::of_errors(diagnosis.error.quantity, &model);
+            said.tell_in(shown, diagnosis);
+        }
         for line in said.summary.iter_mut().chain(&mut said.warnings) {
             *line = self.shortened(line);
         }
@@ -105,6 +113,7 @@ impl LabSession {
             Addition::Undetermined(why) => return Err(undetermined(&why)),
         };
         self.keep_step(
+            report,
             &begun,
             SavedStep {
                 title: format!("{} added", listed(&each(names, effect_name))),
@@ -116,36 +125,46 @@ impl LabSession {
         )
     }
 
-    /// Fits values of the model in force to the logs, as a new step; those it frees where none are
-    /// named.
+    /// Fits values of the model in force to the logs, as a new step, within bounds that are written
+    /// into the model; those it frees where none are named.
     ///
     /// # Errors
-    /// Values that it has not, or that the motions do not determine.
-    pub fn fit_values(&self, report: &JobReport, values: &[String]) -> Result<()> {
+    /// Values that it has not, or that the motions do not determine; bounds that leave no room.
+    pub fn fit_values(
+        &self,
+        report: &JobReport,
+        values: &[String],
+        bounds: &[ChosenBounds],
+    ) -> Result<()> {
         let begun = self.saved();
         let view = self.view_of(begun.clone());
-        let model = self.model_at(&view)?;
+        self.model_at(&view)?;
+        let file = model_file(begun.current);
+        let text = with_bounds(self.toml(&begun)?, &file, bounds)?;
+        let model = Model::parse(&text, &file)?;
         let free = free_parameters(&model, values)?;
         let split = self.log_set(&view).read(&model.log)?;
         let horizon = Some(view.horizon());
         let refitted = refit(&model, &free, &split, horizon, &|p| report.hear(p))
             .map_err(|why| undetermined(&why))?;
-        let file = model_file(begun.current);
-        let toml = with_refitted(self.toml(&begun)?, &file, &model, &refitted, &split)?;
+        let toml = with_refitted(&text, &file, &model, &refitted, &split)?;
         let names: Vec<String> = free.iter().map(ToString::to_string).collect();
         self.keep_step(
+            report,
             &begun,
             SavedStep {
                 title: format!("{} fitted", listed(&each(&names, value_name))),
                 toml,
-                command: Some(view.fit_command(values)),
+                command: Some(view.fit_command(values, bounds)),
                 note: String::new(),
                 values: saved_values(&refitted),
             },
         )
     }
 
-    fn keep_step(&self, begun: &SavedSession, step: SavedStep) -> Result<()> {
+    /// Keeps what a fit found, unless it was stopped meanwhile.
+    fn keep_step(&self, report: &JobReport, begun: &SavedSession, step: SavedStep) -> Result<()> {
+        report.tell("the new model");
         unchanged(&self.saved(), begun)?;
         self.push_step(step)
     }
@@ -163,6 +182,40 @@ impl LabSession {
 
 pub(super) fn no_model() -> Error {
     Error::usage("there is no model", "bring one first")
+}
+
+/// Bounds of a value as a page gives them; an end that is left out is free.
+#[derive(Debug, Clone, Deserialize)]
+pub struct ChosenBounds {
+    /// Its address.
+    pub path: String,
+    /// Lower bound.
+    pub low: Option<f64>,
+    /// Upper bound.
+    pub high: Option<f64>,
+}
+
+impl ChosenBounds {
+    /// Both ends; none where both are free.
+    pub fn ends(&self) -> Option<(f64, f64)> {
+        let (low, high) = (self.low, self.high);
+        (low.is_some() || high.is_some()).then_some((
+            low.unwrap_or(f64::NEG_INFINITY),
+            high.unwrap_or(f64::INFINITY),
+        ))
+    }
+}
+
+/// A model's text with these bounds.
+///
+/// # Errors
+/// Values that it has not; bounds that leave no room, or that its value lies outside of.
+pub fn with_bounds(text: &str, file: &Path, bounds: &[ChosenBounds]) -> Result<String> {
+    let bounds = bounds.iter().map(|own| Ok((own.path.parse()?, own.ends())));
+    match bounds.collect::<Result<Vec<_>>>()?.as_slice() {
+        [] => Ok(text.to_string()),
+        bounds => set_bounds(text, file, bounds),
+    }
 }
 
 fn each(names: &[String], name: fn(&str) -> String) -> Vec<String> {

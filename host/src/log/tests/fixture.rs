@@ -84,6 +84,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         effects: Vec::new(),
         laws: Vec::new(),
         free: Vec::new(),
+        bounds: Vec::new(),
         log,
     }
 }

@@ -254,3 +254,23 @@ fn a_step_is_written_over_the_old_one_or_beside_the_rig_s_other_keys() {
     assert_eq!(Model::parse(&text, path()).unwrap().step_s, 0.0025);
     assert!(set_step(MODEL, path(), 0.5).is_err());
 }
+
+#[test]
+fn bounds_are_written_changed_and_lifted() {
+    let com = "link1.com_m".parse().unwrap();
+    let free = Model::parse(MODEL, path()).unwrap().free;
+    let text = set_bounds(MODEL, path(), &[(com, Some((0.05, 0.2)))]).unwrap();
+    assert!(
+        text.contains("[fit.bounds]\n\"link1.com_m\" = [0.05, 0.2]\n"),
+        "{text}"
+    );
+    let model = Model::parse(&text, path()).unwrap();
+    assert_eq!(com.bounds(&model), (0.05, 0.2));
+    assert_eq!(model.free, free);
+    let open = set_bounds(&text, path(), &[(com, Some((f64::NEG_INFINITY, 0.3)))]).unwrap();
+    assert_eq!(com.bounds(&Model::parse(&open, path()).unwrap()).1, 0.3);
+    assert_eq!(set_bounds(&text, path(), &[(com, None)]).unwrap(), MODEL);
+    for (low, high) in [(0.3, 0.4), (0.2, 0.05)] {
+        assert!(set_bounds(MODEL, path(), &[(com, Some((low, high)))]).is_err());
+    }
+}

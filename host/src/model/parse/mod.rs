@@ -3,6 +3,7 @@
 mod columns;
 mod effects;
 mod expressions;
+mod fit;
 #[cfg(test)]
 mod slide_tests;
 #[cfg(test)]
@@ -10,7 +11,6 @@ mod tests;
 
 use super::field::{JOINT_INERTIA, JointField, LinkField, POSITIVE};
 use super::limits::Limits;
-use super::path::ParameterPath;
 use super::reader::Table;
 use super::reason::ModelReason;
 use super::source::TomlSource;
@@ -68,12 +68,13 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
         effects,
         laws,
         free: Vec::new(),
+        bounds: Vec::new(),
         log,
     };
     if model.slides() && model.angles == Angles::Absolute {
         return Err(rig.bad("angles", ModelReason::AbsoluteSlides));
     }
-    model.free = free(&root, &model)?;
+    (model.free, model.bounds) = fit::read(&root, &model)?;
     Ok(model)
 }
 
@@ -215,35 +216,4 @@ fn motor(table: &Table, stall: &str, no_load: &str) -> Result<Motor> {
         no_load_speed_rad_s: no_load_speed.unwrap_or(f64::INFINITY),
         nominal_supply_v: table.number("nominal_supply_v", ABOVE_ZERO)?,
     })
-}
-
-/// The parameters that `[fit]` names, or else all of the effects'.
-fn free(root: &Table, model: &Model) -> Result<Vec<ParameterPath>> {
-    let fit = root.table("fit")?;
-    if let Some(fit) = &fit {
-        fit.only(&["free", "fitted"])?;
-        // Where values came from: for people and reports, so any content will do.
-        fit.table("fitted")?;
-    }
-    let Some(named) = fit.map(|fit| fit.texts("free")).transpose()?.flatten() else {
-        let effects = model.effects.iter();
-        return Ok(effects.flat_map(ParameterPath::of_effect).collect());
-    };
-    let mut free = Vec::new();
-    for (text, span) in named {
-        let parsed = super::address::read(text);
-        let parameter = parsed.map_err(|reason| root.refused(span.clone(), reason))?;
-        let path = text.to_string();
-        let reason = match parameter.get(model) {
-            None => ModelReason::FreeAbsent { path },
-            Some(value) if !value.is_finite() => ModelReason::FreeInfinite { path },
-            Some(_) if free.contains(&parameter) => ModelReason::FreeTwice { path },
-            Some(_) => {
-                free.push(parameter);
-                continue;
-            }
-        };
-        return Err(root.refused(span, reason));
-    }
-    Ok(free)
 }

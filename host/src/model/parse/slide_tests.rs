@@ -1,6 +1,7 @@
 //! Joints that slide, in model files.
 
 use super::*;
+use crate::model::ParameterPath;
 
 fn parse(text: &str) -> Result<Model> {
     Model::parse(text, Path::new("rig.toml"))

@@ -1,7 +1,7 @@
 mod refusals;
 
 use super::*;
-use crate::model::{PathReason, TomlReason};
+use crate::model::{ParameterPath, PathReason, TomlReason};
 use proptest::prelude::*;
 
 const GOOD: &str = include_str!("../testdata/full.toml");
@@ -228,4 +228,32 @@ input = {{ column = "i", {unit} }}
             .to_string()
             .contains("unknown key")
     );
+}
+
+#[test]
+fn bounds_of_a_fit_narrow_what_is_possible() {
+    let bounded = |bounds: &str| {
+        let text = [GOOD, "\n[fit.bounds]\n", bounds].concat();
+        parse(&text)
+    };
+    let com = "link1.com_m".parse::<ParameterPath>().unwrap();
+    let possible = com.possible();
+    let of = |bounds: &str| com.bounds(&bounded(bounds).unwrap());
+    assert_eq!(of(""), possible);
+    assert_eq!(of("\"link1.com_m\" = [0.05, 0.2]"), (0.05, 0.2));
+    assert_eq!(of("\"link1.com_m\" = [0.05, inf]"), (0.05, possible.1));
+    for (wrong, why) in [
+        ("\"link1.com_m\" = [0.2, 0.05]", "no possible value"),
+        ("\"link1.com_m\" = [0.3, 0.4]", "lies outside its bounds"),
+        ("\"link1.com_m\" = 0.3", "is a float"),
+        ("\"link1.com_m\" = [0.3]", "is an array"),
+        ("\"link7.com_m\" = [0.0, 1.0]", "is not in this model"),
+        ("link1.com_m = [0.0, 1.0]", "link1"),
+    ] {
+        let said = bounded(wrong).unwrap_err().to_string();
+        assert!(
+            said.contains(why) && said.contains("rig.toml:"),
+            "{wrong}: {said}"
+        );
+    }
 }

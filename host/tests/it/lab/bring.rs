@@ -1,6 +1,5 @@
 //! Logs of every format that the library reads.
 
-use super::server::Server;
 use crate::common::Bench;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -13,7 +12,7 @@ fn kept(name: &str) -> Vec<u8> {
 #[test]
 fn the_lab_takes_whatever_the_reader_reads() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     for name in [
         "states_zstd.mcap",
         "states_lz4.mcap",
@@ -49,7 +48,7 @@ fn a_log_of_a_robot_is_compared_as_on_the_command_line() {
     std::fs::write(bench.path("states.mcap"), kept("states_zstd.mcap")).unwrap();
     assert_eq!(bench.run("init states.mcap -o robot.toml").code, Some(0));
     let told = bench.run("compare robot.toml states.mcap --json").json();
-    let server = Server::start(&bench, "robot.toml states.mcap");
+    let server = bench.lab("robot.toml states.mcap");
     let (meta, _) = server.get("/s/1/curves?motion=0").curves();
     let signals = told["comparisons"][0]["signals"].as_array().unwrap();
     let rms: Vec<_> = signals
@@ -62,7 +61,7 @@ fn a_log_of_a_robot_is_compared_as_on_the_command_line() {
 #[test]
 fn a_table_that_cannot_be_read_is_refused_with_the_remedy() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     for (name, remedy) in [
         ("a.parquet", "to_csv"),
         ("a.mcap", ""),
@@ -90,7 +89,7 @@ fn a_table_that_cannot_be_read_is_refused_with_the_remedy() {
 #[test]
 fn a_model_from_the_form_takes_the_columns_of_the_log() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     // Two swings one after the other, each with a clock that begins at 0.
     let row = |segment: u32, k: u32| {
         let t = 0.01 * f64::from(k);
@@ -130,9 +129,11 @@ fn a_model_from_the_form_takes_the_columns_of_the_log() {
 #[test]
 fn a_model_is_estimated_from_a_log_as_init_does() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
-    let refused = server.post("/s/1/model-from-log", &json!({}));
-    assert_eq!(refused.status, 404, "{}", refused.text());
+    let server = bench.lab("");
+    server.post("/s/1/model-from-log", &json!({}));
+    let end = server.wait();
+    assert_eq!(end["state"], "failed");
+    assert_eq!(end["error"], "no log tells of joints", "{end}");
     let log = bench.get("a.csv");
     let sent = server.post_bytes("/s/1/upload?name=a.csv", "", log.as_bytes());
     assert_eq!(sent.status, 200, "{}", sent.text());
@@ -140,7 +141,8 @@ fn a_model_is_estimated_from_a_log_as_init_does() {
     assert!(page.contains("id=\"from-log\""), "{page}");
     let made = server.post("/s/1/model-from-log", &json!({}));
     assert_eq!(made.status, 200, "{}", made.text());
-    assert!(made.text().contains("/s/1/compare"), "{}", made.text());
+    let end = server.wait();
+    assert_eq!(end, json!({ "state": "done", "page": "compare" }));
     let toml = server.get("/s/1/download/model.toml").text();
     bench.run("init a.csv -o by_init.toml");
     assert_eq!(toml, bench.get("by_init.toml"));

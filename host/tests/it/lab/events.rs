@@ -1,6 +1,6 @@
 //! A page that hears the robot's events, and answers that it is there.
 
-use super::server::{PATIENCE, Server};
+use super::server::{LabServer, PATIENCE};
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{Shutdown, TcpStream};
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 /// A page without a browser.
 pub struct Watcher<'a> {
-    server: &'a Server,
+    server: &'a LabServer,
     /// Its number.
     pub viewer: u64,
     stream: TcpStream,
@@ -21,7 +21,7 @@ pub struct Watcher<'a> {
 
 impl<'a> Watcher<'a> {
     /// Opens the events of session 1.
-    pub fn new(server: &'a Server) -> Self {
+    pub fn new(server: &'a LabServer) -> Self {
         let mut stream = TcpStream::connect(("127.0.0.1", server.port)).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         let head = format!(

@@ -1,6 +1,6 @@
 //! The gains page answers for every model that has a drive, and says what the others lack.
 
-use super::server::{Response, Server};
+use super::server::{LabServer, Response};
 use crate::common::Bench;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -15,7 +15,7 @@ fn models() -> Vec<String> {
     names
 }
 
-fn design(server: &Server) -> Response {
+fn design(server: &LabServer) -> Response {
     let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
     server.post("/s/1/gains", &asked)
 }
@@ -25,7 +25,7 @@ fn every_driven_model_gets_gains_and_the_others_are_told_what_they_lack() {
     let (mut designed, mut refused) = (0, 0);
     for model in models() {
         let bench = Bench::new();
-        let server = Server::start(&bench, &model);
+        let server = bench.lab(&model);
         let page = server.get("/s/1/gains").text();
         let answer = design(&server);
         if page.contains("No joint of this model is driven") {
@@ -55,7 +55,7 @@ fn what_a_model_has_learned_shows_in_the_response() {
             "arm.toml",
             text.replace(given, &format!("torque_nm = {torque_nm}")),
         );
-        let answer = design(&Server::start(&bench, "arm.toml"));
+        let answer = design(&bench.lab("arm.toml"));
         assert_eq!(answer.status, 200, "{}", answer.text());
         answer.json()
     });
@@ -85,7 +85,7 @@ fn the_page_says_what_the_command_says() {
         "arm.toml",
         text.replace("torque_nm = 0.03", "torque_nm = 0.9"),
     );
-    let server = Server::start(&bench, "arm.toml");
+    let server = bench.lab("arm.toml");
     let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
     let said = server.post("/s/1/verified", &asked).json();
     let told = bench.run("gains arm.toml --q 100 --r 1 --ts 0.01").stdout;

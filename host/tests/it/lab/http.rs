@@ -1,11 +1,11 @@
 //! The loop over HTTP: the numbers are those of the command line, and nothing saved is lost.
 
-use super::server::Server;
+use super::server::LabServer;
 use crate::common::Bench;
 use serde_json::json;
 
 /// The error in force, as the page's data say it, rad.
-fn error_now(server: &Server) -> f64 {
+fn error_now(server: &LabServer) -> f64 {
     let page = server.get("/s/1/learn").text();
     let (_, after) = page.split_once("id=\"error-now\" data-error=\"").unwrap();
     after.split('"').next().unwrap().parse().unwrap()
@@ -14,7 +14,7 @@ fn error_now(server: &Server) -> f64 {
 #[test]
 fn the_numbers_are_those_of_the_command_line() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     let held_out = json!({ "file": "b.csv", "action": "hold_out" });
     assert_eq!(server.post("/s/1/log", &held_out).status, 200);
 
@@ -97,7 +97,7 @@ fn the_numbers_are_those_of_the_command_line() {
 #[test]
 fn steps_are_undone_and_survive_a_kill_in_the_middle_of_a_fit() {
     let bench = Bench::new();
-    let mut server = Server::start(&bench, "model.toml a.csv b.csv");
+    let mut server = bench.lab("model.toml a.csv b.csv");
     let before = error_now(&server);
     server.post("/s/1/add", &json!({ "names": "viscous" }));
     assert_eq!(server.wait()["state"], "done");
@@ -118,7 +118,7 @@ fn steps_are_undone_and_survive_a_kill_in_the_middle_of_a_fit() {
     );
     server.kill();
 
-    let mut server = Server::start_alone(&bench, "");
+    let mut server = bench.lab_alone("");
     // Earlier sessions wait to be chosen from.
     assert_eq!(server.come_in(), "/sessions");
     assert_eq!(error_now(&server), after);
@@ -140,7 +140,7 @@ fn steps_are_undone_and_survive_a_kill_in_the_middle_of_a_fit() {
 #[test]
 fn a_diagnosis_is_stopped() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     // Three motions of 20 s: long work.
     assert_eq!(
         server
@@ -166,7 +166,7 @@ fn a_diagnosis_is_stopped() {
 #[test]
 fn what_if_and_kept_values() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     let before = error_now(&server);
     let tried = json!({
         "motion": 0,
@@ -193,7 +193,7 @@ fn what_if_and_kept_values() {
 #[test]
 fn a_challenge_is_played_and_counted() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     let begun = server.post("/s/1/round", &json!({ "seed": 7 })).json();
     assert_eq!(begun["go"], "/s/2/compare");
     bench.run("challenge new --seed 7 -o riddle");
@@ -231,7 +231,7 @@ fn gains_are_those_of_the_command_line() {
         "handstand.toml",
         include_str!("../../../models/handstand.toml"),
     );
-    let server = Server::start(&bench, "handstand.toml");
+    let server = bench.lab("handstand.toml");
     let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": null });
     let made = server.post("/s/1/gains", &asked).json();
     let told = bench.run("gains handstand.toml --json").json();
@@ -255,7 +255,7 @@ fn gains_are_those_of_the_command_line() {
 #[test]
 fn a_model_is_made_from_a_form_and_its_columns_picked() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     let log = "zeit;winkel <b>\n".to_string()
         + &(0..50)
             .map(|k| format!("{};{}\n", 10 * k, k % 7))

@@ -1,17 +1,17 @@
 //! What a session keeps: diagnoses by what they are of, sessions as files, logs in parts.
 
-use super::server::Server;
+use super::server::LabServer;
 use crate::common::Bench;
 use serde_json::{Value, json};
 
-fn saved(server: &Server, number: u32) -> Value {
+fn saved(server: &LabServer, number: u32) -> Value {
     server
         .get(&format!("/s/{number}/download/session.json"))
         .json()
 }
 
-fn diagnosed(bench: &Bench) -> Server {
-    let server = Server::start(bench, "model.toml a.csv b.csv");
+fn diagnosed(bench: &Bench) -> LabServer {
+    let server = bench.lab("model.toml a.csv b.csv");
     let held_out = json!({ "file": "b.csv", "action": "hold_out" });
     assert_eq!(server.post("/s/1/log", &held_out).status, 200);
     assert_eq!(server.post("/s/1/diagnose", &json!({})).status, 200);
@@ -25,7 +25,7 @@ fn a_diagnosis_comes_back_with_its_logs_and_its_model() {
     let mut server = diagnosed(&bench);
     let said = saved(&server, 1)["diagnosis"].clone();
     assert_eq!(said["verdict"], "named");
-    let verdict = |server: &Server| server.get("/s/1/learn").text().contains("data-verdict");
+    let verdict = |server: &LabServer| server.get("/s/1/learn").text().contains("data-verdict");
 
     // A file that is no log of this rig is left out, and the diagnosis stays.
     let wrong = b"time_s,other\n0,1\n0.01,2\n";
@@ -65,7 +65,7 @@ fn a_diagnosis_comes_back_with_its_logs_and_its_model() {
     );
     // And after the lab was ended.
     server.kill();
-    let mut server = Server::start_alone(&bench, "");
+    let mut server = bench.lab_alone("");
     server.come_in();
     assert!(verdict(&server));
 }
@@ -73,7 +73,7 @@ fn a_diagnosis_comes_back_with_its_logs_and_its_model() {
 #[test]
 fn every_error_is_said_with_how_long_models_run() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     for page in ["compare", "learn", "what-if"] {
         let text = server.get(&format!("/s/1/{page}")).text();
         assert!(text.contains("over whole motions"), "{page}");
@@ -169,7 +169,7 @@ fn a_saved_session_opens_again_with_its_logs() {
 #[test]
 fn rows_of_a_log_are_used_or_judge() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     let divide = |parts: Value| {
         let asked = json!({ "file": "a.csv", "parts": parts });
         server.post("/s/1/divide", &asked).status

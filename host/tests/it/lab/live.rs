@@ -1,7 +1,7 @@
 //! The robot at a port, watched from a page while it is recorded or balanced.
 
 use super::events::Watcher;
-use super::server::Server;
+use super::server::LabServer;
 use crate::common::Bench;
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader};
@@ -11,16 +11,16 @@ use std::time::{Duration, Instant};
 const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
 
 /// A lab with the robot with ideal servos, held upright until torque comes on.
-fn lab(bench: &Bench) -> Server {
+fn lab(bench: &Bench) -> LabServer {
     let robot = format!("--robot sim-cm5:robot={MODEL},start=held,lean=1/-1/1");
-    Server::start(bench, &format!("{MODEL} {robot}"))
+    bench.lab(&format!("{MODEL} {robot}"))
 }
 
 fn balance(seconds: impl Into<Value>) -> Value {
     json!({ "what": "balance", "seconds": seconds.into(), "countdown_s": 0.1, "torque": 1.0 })
 }
 
-fn logs(server: &Server) -> Vec<String> {
+fn logs(server: &LabServer) -> Vec<String> {
     let saved = server.get("/s/1/download/session.json").json();
     let logs = saved["logs"].as_array().unwrap().iter();
     logs.map(|log| log["file"].as_str().unwrap().to_string())
@@ -30,7 +30,7 @@ fn logs(server: &Server) -> Vec<String> {
 #[test]
 fn what_is_recorded_is_seen_live_and_becomes_a_log() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "--robot sim:ids=1-2,delay=0 --ids 1-2");
+    let server = bench.lab("--robot sim:ids=1-2,delay=0 --ids 1-2");
     let page = Watcher::new(&server);
     let begun = Instant::now();
     assert_eq!(
@@ -190,7 +190,7 @@ fn a_page_that_goes_away_lets_the_robot_down() {
 #[test]
 fn a_lab_without_a_robot_says_how_to_name_one() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv");
+    let server = bench.lab("model.toml a.csv");
     assert!(
         server
             .get("/s/1/robot")
@@ -233,7 +233,7 @@ fn is_let_down_after(end: &str) -> bool {
     let out = robot.0.stdout.take().unwrap();
     BufReader::new(out).read_line(&mut port).unwrap();
     let words = format!("{MODEL} --robot {} --gyro-per-code 0.0174533", port.trim());
-    let server = Server::start(&bench, &words);
+    let server = bench.lab(&words);
     let page = Watcher::new(&server);
     assert_eq!(page.begin(&balance(Value::Null)), 200);
     page.agrees_to_all();

@@ -2,7 +2,6 @@
 
 use super::browser;
 use super::models::duty_log;
-use super::server::Server;
 use crate::common::Bench;
 use handstand_browser::Browser;
 use serde_json::json;
@@ -14,7 +13,7 @@ fn a_model_is_made_of_a_log_and_the_log_is_cut() {
     let Some(mut browser) = browser() else {
         return;
     };
-    let server = Server::start_alone(&bench, "");
+    let server = bench.lab_alone("");
     browser.open(&server.address);
     browser.until("location.pathname === '/s/1/data' && document.getElementById('drop')");
     browser.choose_files("#files", &[bench.path("arm.csv").as_path()]);

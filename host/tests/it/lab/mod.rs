@@ -9,8 +9,10 @@ mod live;
 mod made;
 mod models;
 mod pages;
+mod plots;
 mod safety;
 mod server;
+mod sessions;
 mod two_browsers;
 mod wide_log;
 

@@ -1,6 +1,6 @@
 //! Models that are brought, made, changed and judged in the lab.
 
-use super::server::Server;
+use super::server::LabServer;
 use crate::common::Bench;
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ const URDF: &str = r#"<robot name="arm"><link name="base"/><link name="rod"><ine
 izz="1e-3"/></inertial></link><joint name="shoulder" type="continuous"><parent link="base"/>
 <child link="rod"/><axis xyz="0 1 0"/></joint></robot>"#;
 
-fn steps(server: &Server) -> Vec<Value> {
+fn steps(server: &LabServer) -> Vec<Value> {
     let saved = server.get("/s/1/download/session.json").json();
     saved["steps"].as_array().unwrap().clone()
 }
@@ -27,7 +27,7 @@ pub fn duty_log() -> String {
 #[test]
 fn model_files_are_taken_by_drop() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     let drop = |name: &str, text: &str| {
         server.post_bytes(&format!("/s/1/upload?name={name}"), "", text.as_bytes())
     };
@@ -61,7 +61,7 @@ fn model_files_are_taken_by_drop() {
 #[test]
 fn the_command_line_takes_logs_alone_and_foreign_models() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "a.csv b.csv --no-browser");
+    let server = bench.lab("a.csv b.csv --no-browser");
     let page = server.get("/s/1/data").text();
     let [make, text] = ["id=\"make\"", "id=\"toml\""].map(|id| page.find(id).unwrap());
     assert!(make < text, "the form stands above the text");
@@ -75,7 +75,7 @@ fn the_command_line_takes_logs_alone_and_foreign_models() {
     drop(server);
     let bench = Bench::new();
     bench.put("arm.urdf", URDF);
-    let server = Server::start(&bench, "a.csv arm.urdf");
+    let server = bench.lab("a.csv arm.urdf");
     assert!(
         steps(&server)[0]["toml"]
             .as_str()
@@ -89,7 +89,7 @@ fn the_command_line_takes_logs_alone_and_foreign_models() {
 #[test]
 fn the_form_is_filled_from_the_log_and_leads_to_compare() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     server.post_bytes("/s/1/upload?name=arm.csv", "", duty_log().as_bytes());
     let page = server.get("/s/1/data").text();
     let (_, draft) = page.split_once("id=\"draft\"").unwrap();
@@ -136,7 +136,7 @@ fn a_log_in_degrees_is_shown_in_degrees() {
     let rms = told["comparisons"][0]["signals"][0]["rms_rad"]
         .as_f64()
         .unwrap();
-    let server = Server::start(&bench, "arm.toml arm.csv");
+    let server = bench.lab("arm.toml arm.csv");
     let (meta, _) = server.get("/s/1/curves?motion=0").curves();
     assert_eq!(meta["shown"][0]["unit"], "deg");
     assert_eq!(meta["rms"].as_f64().unwrap(), rms);
@@ -162,7 +162,7 @@ fn a_log_in_degrees_is_shown_in_degrees() {
 #[test]
 fn what_was_fitted_stands_there_with_its_interval_and_unit() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     server.post("/s/1/add", &json!({ "names": "viscous@1" }));
     assert_eq!(server.wait()["state"], "done");
     let step = &steps(&server)[1];
@@ -196,7 +196,7 @@ fn what_was_fitted_stands_there_with_its_interval_and_unit() {
 #[test]
 fn a_report_is_titled_by_the_verdict() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     server.post("/s/1/diagnose", &json!({}));
     assert_eq!(server.wait()["state"], "done");
     let said = server.get("/s/1/download/session.json").json()["diagnosis"].clone();
@@ -213,8 +213,8 @@ fn a_report_is_titled_by_the_verdict() {
 #[test]
 fn what_was_meant_for_another_model_is_refused() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
-    let shown = |server: &Server| {
+    let server = bench.lab("model.toml a.csv b.csv");
+    let shown = |server: &LabServer| {
         let page = server.get("/s/1/what-if").text();
         let (_, hash) = page.split_once("data-model=\"").unwrap();
         hash.split('"').next().unwrap().to_string()
@@ -250,7 +250,7 @@ fn what_was_meant_for_another_model_is_refused() {
 #[test]
 fn an_unreadable_log_is_left_out_with_a_word() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv");
+    let server = bench.lab("model.toml a.csv");
     let before = server.get("/s/1/curves?motion=0").curves().0["rms"].clone();
     for (name, text) in [
         ("empty.csv", ""),
@@ -279,7 +279,7 @@ fn an_unreadable_log_is_left_out_with_a_word() {
     let server = {
         drop(server);
         let bench = Bench::new();
-        let server = Server::start(&bench, "");
+        let server = bench.lab("");
         server.post_bytes(
             "/s/1/upload?name=binary.csv",
             "",
@@ -293,7 +293,7 @@ fn an_unreadable_log_is_left_out_with_a_word() {
 #[test]
 fn the_next_experiment_is_proposed_as_on_the_command_line() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     server.post("/s/1/example", &json!({ "example": "coulomb" }));
     server.post("/s/1/next", &json!({}));
     let end = server.wait();
@@ -327,7 +327,7 @@ fn the_next_experiment_is_proposed_as_on_the_command_line() {
 
     // A rig that swings freely is told at once.
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv");
+    let server = bench.lab("model.toml a.csv");
     server.post("/s/1/next", &json!({}));
     let end = server.wait();
     assert_eq!(end["state"], "failed");

@@ -1,7 +1,6 @@
 //! A person with a log, from bringing it to a better model; keyboard alone.
 
 use super::browser;
-use super::server::Server;
 use crate::common::Bench;
 use handstand_browser::Browser;
 use serde_json::json;
@@ -18,7 +17,7 @@ fn from_a_log_to_a_better_model_and_back() {
     let Some(mut browser) = browser() else {
         return;
     };
-    let server = Server::start_alone(&bench, "");
+    let server = bench.lab_alone("");
     browser.open(&server.address);
     browser.until("location.pathname === '/s/1/data' && document.getElementById('drop')");
     browser.pictures("1-empty");
@@ -147,7 +146,7 @@ fn a_robot_is_balanced_and_stopped_from_its_page() {
     };
     let robot = format!("--robot sim-cm5:robot={MODEL},start=held,lean=1/-1/1");
     let words = format!("{MODEL} {robot}");
-    let server = Server::start_alone(&bench, &words);
+    let server = bench.lab_alone(&words);
     browser.open(&server.address);
     browser.until("document.getElementById('drop')");
     browser.open(&format!("http://127.0.0.1:{}/s/1/robot", server.port));
@@ -226,7 +225,7 @@ fn a_public_log_becomes_a_better_model_by_the_pages_alone() {
     let Some(mut browser) = browser() else {
         return;
     };
-    let server = Server::start_alone(&bench, "");
+    let server = bench.lab_alone("");
     browser.open(&server.address);
     browser.until("location.pathname === '/s/1/data' && document.getElementById('drop')");
     browser.choose_files("#files", &[bench.path("single.csv").as_path()]);

@@ -1,13 +1,12 @@
 //! Who is let in, and what is refused.
 
-use super::server::Server;
 use crate::common::Bench;
 use serde_json::json;
 
 #[test]
 fn without_token_host_or_origin_nobody_is_let_in() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     let cookie = ("Cookie", server.cookies.as_str());
     let ask =
         |method, headers: &[(&str, &str)]| server.ask(method, "/s/1/data", headers, b"").status;
@@ -60,7 +59,7 @@ fn without_token_host_or_origin_nobody_is_let_in() {
 #[test]
 fn a_page_may_run_nothing_but_the_lab_s_own_scripts() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv b.csv");
+    let server = bench.lab("model.toml a.csv b.csv");
     let pages = [
         "data",
         "compare",
@@ -145,7 +144,7 @@ fn a_page_may_run_nothing_but_the_lab_s_own_scripts() {
 #[test]
 fn too_large_a_log_is_refused_with_the_reason() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv");
+    let server = bench.lab("model.toml a.csv");
     let origin = format!("http://127.0.0.1:{}", server.port);
     let common = [
         ("Cookie", server.cookies.as_str()),
@@ -186,7 +185,7 @@ fn too_large_a_log_is_refused_with_the_reason() {
 #[test]
 fn markup_and_what_is_no_number_do_no_harm() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "");
+    let server = bench.lab("");
     let name = "<img src=x onerror=alert(1)>";
     let log = format!("time_s,\"{name}\"\n0,NaN\n0.1,inf\n0.2,<script>\n0.3\n");
     let path = "/s/1/upload?name=%3Cb%3E.csv";
@@ -250,7 +249,7 @@ fn markup_and_what_is_no_number_do_no_harm() {
 #[test]
 fn a_browser_that_goes_astray_gets_a_page_with_style() {
     let bench = Bench::new();
-    let server = Server::start(&bench, "model.toml a.csv");
+    let server = bench.lab("model.toml a.csv");
     let html = ("Accept", "text/html,application/xhtml+xml");
     let cookie = ("Cookie", server.cookies.as_str());
     for (path, status, word) in [

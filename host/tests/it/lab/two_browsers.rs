@@ -1,13 +1,12 @@
 //! Two browsers at one lab do not disturb each other.
 
-use super::server::Server;
 use crate::common::Bench;
 use serde_json::json;
 
 #[test]
 fn each_browser_works_in_a_session_of_its_own() {
     let bench = Bench::new();
-    let mut server = Server::start(&bench, "model.toml a.csv b.csv");
+    let mut server = bench.lab("model.toml a.csv b.csv");
     let first = server.cookies.clone();
     assert_eq!(server.come_in(), "/s/2/data", "a second browser");
     let second = std::mem::replace(&mut server.cookies, first);

@@ -1,7 +1,6 @@
 //! A log as long and wide as they come is drawn.
 
 use super::browser;
-use super::server::Server;
 use crate::common::Bench;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -34,7 +33,7 @@ fn a_minute_of_eighteen_joints_is_drawn() {
     let Some(mut browser) = browser() else {
         return;
     };
-    let server = Server::start_alone(&bench, "");
+    let server = bench.lab_alone("");
     // So tall that every chart is in sight: what is not is not drawn.
     let tall = json!({ "width": 1280, "height": 5000, "deviceScaleFactor": 1, "mobile": false });
     browser.call("Emulation.setDeviceMetricsOverride", tall);

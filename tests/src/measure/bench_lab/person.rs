@@ -1,9 +1,8 @@
 //! A person at the lab: opens pages, moves sliders, brings a log.
 
 use super::rig::{Rig, minute_of_eighteen_joints};
-use super::served::Served;
 use super::step::Step;
-use handstand_browser::Browser;
+use handstand_browser::{Browser, LabServer};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -70,7 +69,7 @@ impl Person {
     /// Opens every page of a rig, and moves every kind of slider.
     ///
     /// # Errors
-    /// The lab cannot be started, or the system refuses.
+    /// The system refuses.
     pub fn works_with(&mut self, rig: &Rig, steps: &mut Vec<Step>) -> Result<(), String> {
         let folder = tempfile::tempdir().map_err(|why| why.to_string())?;
         let files = rig.write(folder.path()).map_err(|why| why.to_string())?;
@@ -109,7 +108,7 @@ impl Person {
         let folder = tempfile::tempdir().map_err(|why| why.to_string())?;
         let minute = folder.path().join("minute.csv");
         std::fs::write(&minute, minute_of_eighteen_joints()).map_err(|why| why.to_string())?;
-        let served = Served::start(&self.program, &[], &folder.path().join("sessions"))?;
+        let served = LabServer::start_alone(&self.program, folder.path(), [""; 0]);
         self.browser.open(&served.address);
         self.browser.until("document.getElementById('drop')");
         let begun = Instant::now();
@@ -134,15 +133,21 @@ impl Person {
         files: &[PathBuf],
         folder: &Path,
         steps: &mut Vec<Step>,
-    ) -> Result<Served, String> {
+    ) -> Result<LabServer, String> {
+        let start = |round: usize| {
+            let folder = folder.join(round.to_string());
+            std::fs::create_dir_all(&folder).map_err(|why| why.to_string())?;
+            let begun = Instant::now();
+            let served = LabServer::start_alone(&self.program, &folder, files);
+            Ok::<_, String>((served, 1e3 * begun.elapsed().as_secs_f64()))
+        };
         let mut times = Vec::new();
         for round in 1..self.rounds {
-            let served = Served::start(&self.program, files, &folder.join(round.to_string()))?;
-            times.push(1e3 * served.started_in.as_secs_f64());
+            times.push(start(round)?.1);
         }
         let begun = Instant::now();
-        let served = Served::start(&self.program, files, &folder.join("0"))?;
-        times.push(1e3 * served.started_in.as_secs_f64());
+        let (served, started_ms) = start(0)?;
+        times.push(started_ms);
         self.browser.open(&served.address);
         self.browser.until("document.getElementById('drop')");
         let first_ms = 1e3 * begun.elapsed().as_secs_f64();

@@ -1,0 +1,110 @@
+//! `[fit]`: which values are free, and within which bounds.
+
+use crate::error::Result;
+use crate::model::reader::Table;
+use crate::model::{Model, ModelReason, ParameterPath};
+use std::ops::Range;
+
+/// A written number is rounded to six digits: so far beyond a bound, as a share, it is on it.
+const ROUNDED: f64 = 1e-5;
+
+/// Values that a fit keeps from low to high.
+type Bounds = Vec<(ParameterPath, (f64, f64))>;
+
+/// The values that `[fit]` frees, and its bounds.
+pub(super) fn read(root: &Table, model: &Model) -> Result<(Vec<ParameterPath>, Bounds)> {
+    let fit = root.table("fit")?;
+    let Some(fit) = fit else {
+        return Ok((of_effects(model), Vec::new()));
+    };
+    fit.only(&["free", "bounds", "fitted"])?;
+    // Where values came from: for people and reports, so any content will do.
+    fit.table("fitted")?;
+    Ok((free(&fit, model)?, bounds(&fit, model)?))
+}
+
+fn of_effects(model: &Model) -> Vec<ParameterPath> {
+    let effects = model.effects.iter();
+    effects.flat_map(ParameterPath::of_effect).collect()
+}
+
+/// The values that are named, or else all of the effects'.
+fn free(fit: &Table, model: &Model) -> Result<Vec<ParameterPath>> {
+    let Some(named) = fit.texts("free")? else {
+        return Ok(of_effects(model));
+    };
+    let mut free = Vec::new();
+    for (text, span) in named {
+        let (parameter, value) = value_at(fit, text, span.clone(), model)?;
+        let path = text.to_string();
+        let reason = if !value.is_finite() {
+            ModelReason::FreeInfinite { path }
+        } else if free.contains(&parameter) {
+            ModelReason::FreeTwice { path }
+        } else {
+            free.push(parameter);
+            continue;
+        };
+        return Err(fit.refused(span, reason));
+    }
+    Ok(free)
+}
+
+/// An address, and the value that the model has there.
+fn value_at(
+    fit: &Table,
+    text: &str,
+    span: Option<Range<usize>>,
+    model: &Model,
+) -> Result<(ParameterPath, f64)> {
+    let parsed = crate::model::address::read(text);
+    let parameter = parsed.map_err(|reason| fit.refused(span.clone(), reason))?;
+    let path = text.to_string();
+    let value = parameter.get(model);
+    let value = value.ok_or_else(|| fit.refused(span, ModelReason::FreeAbsent { path }))?;
+    Ok((parameter, value))
+}
+
+/// The bounds of `[fit.bounds]`, by address.
+fn bounds(fit: &Table, model: &Model) -> Result<Bounds> {
+    let Some(table) = fit.table("bounds")? else {
+        return Ok(Vec::new());
+    };
+    let mut bounds: Bounds = Vec::new();
+    for key in table.keys() {
+        let (parameter, value) = value_at(&table, key, table.key_span(key), model)?;
+        let (low, high) = table
+            .pair(key)?
+            .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let possible = parameter.possible();
+        let path = key.to_string();
+        let reason = if !(low < high && low < possible.1 && high > possible.0) {
+            ModelReason::NoBounds {
+                path,
+                low,
+                high,
+                possible,
+            }
+        } else if !(low - slack(low)..=high + slack(high)).contains(&value) {
+            ModelReason::OutsideBounds {
+                path,
+                value,
+                low,
+                high,
+            }
+        } else {
+            bounds.push((parameter, (low, high)));
+            continue;
+        };
+        return Err(table.bad(key, reason));
+    }
+    Ok(bounds)
+}
+
+fn slack(bound: f64) -> f64 {
+    if bound.is_finite() {
+        ROUNDED * bound.abs()
+    } else {
+        0.0
+    }
+}
