@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct LogHeader {
     /// The file, for errors.
     path: PathBuf,
-    /// Between two fields: `,`, `;`, tab or blanks.
+    /// Between two fields: `,`, `;`, tab, `|` or blanks.
     pub separator: u8,
     /// Column names in the file's order, trimmed.
     pub names: Vec<String>,
@@ -223,11 +223,11 @@ fn unquoted(field: &str) -> &str {
     inner.unwrap_or(field)
 }
 
-/// The separator of a header line: the most frequent of `;`, tab and comma.
+/// The separator of a header line: the most frequent of `;`, tab, `|` and comma.
 pub(super) fn separator(line: &str) -> u8 {
     let count = |separator: u8| fields(line, separator).len();
     let mut best = b',';
-    for candidate in [b';', b'\t'] {
+    for candidate in [b';', b'\t', b'|'] {
         if count(candidate) > count(best) {
             best = candidate;
         }

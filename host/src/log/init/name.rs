@@ -80,7 +80,8 @@ pub fn name_guess(name: &str) -> NameGuess {
     };
     let (unit, unit_words) = unit(&words, bracketed);
     let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
-    let role = role(&words, unit.map(|(unit, _)| unit));
+    let is_time = is_time(&words) || is_time(&self::words(field_of(name)));
+    let role = role(&words, is_time, unit.map(|(unit, _)| unit));
     let unit = unit.or_else(|| Some((joint_state_unit(name, role?)?, None)));
     let sets = [
         TIME, SEGMENT, SUPPLY, ON, GOAL, TORQUE, EFFORT, DUTY, VELOCITY, POSITION, MEASURED,
@@ -138,7 +139,17 @@ pub fn says_current(name: &str) -> bool {
     words.iter().any(|word| word == "current")
 }
 
-fn role(words: &[String], unit: Option<&'static str>) -> Option<Role> {
+/// The last part of a name: `time` of MATLAB's `log.time`.
+fn field_of(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+fn is_time(words: &[String]) -> bool {
+    let first = words.first();
+    first.is_some_and(|word| TIME.contains(&word.as_str()))
+}
+
+fn role(words: &[String], is_time: bool, unit: Option<&'static str>) -> Option<Role> {
     let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
     let is = |unit: Option<&str>, names: &[&str]| unit.is_some_and(|unit| names.contains(&unit));
     let speed = has(VELOCITY) || is(unit, &["rad/s", "deg/s", "rpm"]) || has(&["dot"]);
@@ -146,10 +157,7 @@ fn role(words: &[String], unit: Option<&'static str>) -> Option<Role> {
     if has(ON) {
         return Some(Role::TorqueOn);
     }
-    if words
-        .first()
-        .is_some_and(|word| TIME.contains(&word.as_str()))
-    {
+    if is_time {
         return Some(Role::Time);
     }
     let other = has(OTHER);

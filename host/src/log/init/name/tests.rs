@@ -15,6 +15,8 @@ fn names_of_many_benches_are_understood() {
         ("t_s", Time, Some("s"), ""),
         ("time_ms", Time, Some("ms"), ""),
         ("Timestamp [us]", Time, Some("us"), ""),
+        ("log.time", Time, None, "log"),
+        ("rig.t_ms", Time, Some("ms"), "rig"),
         ("segment", Segment, None, ""),
         ("theta1", Position, None, "1"),
         ("dtheta1", Velocity, None, "1"),
