@@ -318,6 +318,15 @@ fn only_the_namespace_of_xacro_is_xacro() {
     let (found, _) = imported(&vendors, &["lift", "elbow"]);
     assert_eq!(told(&found, "link").unwrap().0, Some(8));
     assert_eq!(told(&found, "gear_ratio").unwrap().0, Some(6));
+    // Old files use prefixes that nothing declares.
+    let undeclared = vendors.replace(" xmlns:drake=\"https://drake.mit.edu\"", "");
+    let (found, _) = imported(&undeclared, &["lift", "elbow"]);
+    assert_eq!(told(&found, "link").unwrap().0, Some(8));
+    assert_eq!(told(&found, "gear_ratio").unwrap().0, Some(6));
+    let undeclared = ARM.replace("<limit effort=\"1e16\"/>", "<xacro:limits/>");
+    assert!(refused(&undeclared, &["lift", "elbow"]).contains("<xacro:limits>"));
+    let doctype = format!("<!DOCTYPE robot>\n{ARM}");
+    assert!(refused(&doctype, &["lift", "elbow"]).contains("delete the <!DOCTYPE"));
     let xacro = ARM.replace(
         "<robot ",
         "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" ",
