@@ -2,8 +2,8 @@
 
 use super::counts::counts;
 use super::words::{
-    AXES, DERIVED, DUTY, EFFORT, GOAL, MEASURED, ON, OTHER, PLAIN, POSITION, SEGMENT, SUPPLY, TIME,
-    TORQUE, UNIT_WORDS, VELOCITY,
+    AXES, DERIVED, DUTY, EFFORT, GOAL, MEASURED, ON, OTHER, PER_TURN, PLAIN, POSITION, SEGMENT,
+    SUPPLY, TIME, TORQUE, UNIT_WORDS, VELOCITY,
 };
 use crate::model::{Dimension, Unit};
 
@@ -111,9 +111,14 @@ fn is_number_of_joint(bare: &str, text: &str) -> bool {
     is_number && !(text == "1" && is_duty())
 }
 
-/// Whether a name is that of a topic of ROS joint states, as PlotJuggler writes it.
+/// Whether a name is that of a topic of ROS joint states, or of the state of a controller of joints,
+/// as PlotJuggler writes it, or `rostopic echo -p`.
 pub fn is_joint_state(name: &str) -> bool {
-    name.to_lowercase().contains("joint_states/")
+    let name = name.to_lowercase();
+    let printed = ["field.position", "field.velocity", "field.effort"];
+    name.contains("joint_states/")
+        || name.contains("trajectory_controller/")
+        || printed.iter().any(|begin| name.starts_with(begin))
 }
 
 /// The unit that joint states have by definition.
@@ -161,14 +166,17 @@ fn role(words: &[String], is_time: bool, unit: Option<&'static str>) -> Option<R
         return Some(Role::Time);
     }
     let other = has(OTHER);
+    let moves = speed || has(POSITION);
+    let goal = has(GOAL) || (has(&["input"]) && moves);
     match () {
         () if has(SEGMENT) => Some(Role::Segment),
         () if has(&["payload"]) => Some(Role::Payload),
         () if other || (has(AXES) && !speed) => None,
         () if torque => Some(Role::Torque),
         () if has(DUTY) => Some(Role::Duty),
-        () if has(GOAL) && speed => Some(Role::GoalVelocity),
-        () if has(GOAL) => Some(Role::GoalPosition),
+        // ODrive's `input_pos` is what the drive is given.
+        () if goal && speed => Some(Role::GoalVelocity),
+        () if goal => Some(Role::GoalPosition),
         () if speed => Some(Role::Velocity),
         () if has(POSITION) || is(unit, &["rad", "deg", "turn", "ticks"]) => Some(Role::Position),
         () if has(SUPPLY) => Some(Role::Supply),
@@ -196,6 +204,11 @@ fn unit(words: &[String], bracketed: Option<&str>) -> (Option<(&'static str, Opt
         let known = known.filter(|name| !["A", "mA"].contains(name));
         let known = known.or_else(|| unit_word(&self::words(text).join("_")));
         return (known.map(|unit| (unit, None)), 0);
+    }
+    if let [_, .., word] = words
+        && let Some((_, per_turn)) = PER_TURN.iter().find(|(known, _)| known == word)
+    {
+        return (Some(("ticks", Some(*per_turn))), 1);
     }
     if let [.., word, number] = words {
         let turn = number.parse::<f64>().ok().filter(|turn| *turn >= 100.0);
