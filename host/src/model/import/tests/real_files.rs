@@ -325,8 +325,9 @@ fn only_the_namespace_of_xacro_is_xacro() {
     assert_eq!(told(&found, "gear_ratio").unwrap().0, Some(6));
     let undeclared = ARM.replace("<limit effort=\"1e16\"/>", "<xacro:limits/>");
     assert!(refused(&undeclared, &["lift", "elbow"]).contains("<xacro:limits>"));
-    let doctype = format!("<!DOCTYPE robot>\n{ARM}");
-    assert!(refused(&doctype, &["lift", "elbow"]).contains("delete the <!DOCTYPE"));
+    let doctype = ARM.replacen("<robot ", "<!DOCTYPE robot>\n<robot ", 1);
+    let error = import(&doctype, Path::new("r.urdf"), &ImportPlan::default()).unwrap_err();
+    assert!(error.remedy().unwrap().contains("delete the <!DOCTYPE"));
     let xacro = ARM.replace(
         "<robot ",
         "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" ",
