@@ -183,6 +183,22 @@ pub fn refit_with(
     horizon: Option<Horizon>,
     progress: &dyn Fn(Progress),
 ) -> Result<Refitted, NotAdded> {
+    refit_from(model, candidates, &[], split, horizon, progress)
+}
+
+/// The same from values that are known already, of the effects and of what is free beside them: on
+/// the motions fitted none after it is larger than with these.
+///
+/// # Errors
+/// As [`refit_with`].
+pub fn refit_from(
+    model: &Model,
+    candidates: &[Candidate],
+    start: &[(ParameterPath, f64)],
+    split: &Split,
+    horizon: Option<Horizon>,
+    progress: &dyn Fn(Progress),
+) -> Result<Refitted, NotAdded> {
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
     let mut free = model.free.clone();
@@ -195,6 +211,7 @@ pub fn refit_with(
         candidates,
         free: &free,
         data: &data,
+        start,
     };
     let steps = RefitSteps::new(added.steps());
     progress(steps.fitting());
@@ -246,18 +263,12 @@ impl Refit<'_> {
             found = told_by_others(found, data, judged);
         }
         let mut unobserved = model.log.notes();
-        let (mut values, mut told) = fitted_values(&found, data);
-        if told.is_none() {
-            let held = blind_beside_others(&found, data);
-            if !held.is_empty() {
-                found = with_held(found, &held, data);
-                (values, told) = fitted_values(&found, data);
-                unobserved.extend(held.iter().map(|path| said_of_held(path, &found.model)));
-            }
-        }
-        if told.is_none() {
-            return Err(undetermined_by(&found, data));
-        }
+        let ToldValues {
+            fit: found,
+            values,
+            held,
+        } = told_values(found, data)?;
+        unobserved.extend(held);
         let fitted = self.error_on_fitted(&found);
         let rms_rad = |model: &Model, data: &FitData| fit_start_states(model, data).rms(data);
         let mut windows = data.motion_windows(self.horizon);
@@ -303,6 +314,48 @@ impl Refit<'_> {
     }
 }
 
+/// A fit's values with their intervals.
+pub(super) struct ToldValues {
+    /// The fit, without what is held.
+    pub fit: Fit,
+    /// In the order of what it leaves free.
+    pub values: Vec<FittedValue>,
+    /// What is held because nothing shows of it, a sentence each.
+    pub held: Vec<String>,
+}
+
+/// The values that data determine; one that changes nothing beside another of its effect is held.
+///
+/// # Errors
+/// The data do not determine the values.
+pub(super) fn told_values(found: Fit, data: &FitData) -> Result<ToldValues, Undetermined> {
+    let (values, told) = fitted_values(&found, data);
+    if told.is_some() {
+        return Ok(ToldValues {
+            fit: found,
+            values,
+            held: Vec::new(),
+        });
+    }
+    let held = blind_beside_others(&found, data);
+    if held.is_empty() {
+        return Err(undetermined_by(&found, data));
+    }
+    let found = with_held(found, &held, data);
+    match fitted_values(&found, data) {
+        (values, Some(_)) => {
+            let sentence = |path| said_of_held(path, &found.model);
+            let held = held.iter().map(sentence).collect();
+            Ok(ToldValues {
+                fit: found,
+                values,
+                held,
+            })
+        }
+        _ => Err(undetermined_by(&found, data)),
+    }
+}
+
 /// The blind parameters of effects of which another one tells: a dead zone whose commands begin at
 /// zero has a width below which nothing shows.
 fn blind_beside_others(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
@@ -338,7 +391,7 @@ fn said_of_held(path: &ParameterPath, model: &Model) -> String {
 }
 
 /// Why a fit has no intervals: the parameters that change nothing in the data.
-pub(super) fn undetermined_by(found: &Fit, data: &FitData) -> Undetermined {
+fn undetermined_by(found: &Fit, data: &FitData) -> Undetermined {
     let blind = blind(found, data);
     Undetermined {
         blind: blind.iter().map(ToString::to_string).collect(),

@@ -3,6 +3,7 @@
 mod candidates;
 mod closed_loop;
 mod command;
+mod diagnosis_file;
 pub mod effect_page;
 mod failures;
 mod file_names;
@@ -29,6 +30,7 @@ mod verification;
 mod waterfall;
 mod words;
 
+pub use diagnosis_file::DiagnosisFile;
 pub use file_names::{file_name, file_names};
 pub use json::{diagnosis_json, gains_json, json};
 pub use log_check::{log_check_json, log_check_text};

@@ -42,7 +42,7 @@ fn candidate(id: &str) -> Candidate {
 /// The pendulum let go at `angle`, as `model` swings.
 fn swing(model: &Model, angle: f64) -> Motion {
     let time_s: Vec<f64> = (0..300).map(|k| f64::from(k) * 0.01).collect();
-    let mut motion = Motion {
+    let motion = Motion {
         name: format!("from {angle}"),
         source: MotionSource {
             path: "swing.csv".into(),
@@ -59,6 +59,11 @@ fn swing(model: &Model, angle: f64) -> Motion {
         payload_kg: 0.0,
         turned: false,
     };
+    read_by(model, motion, angle)
+}
+
+/// The motion with the readings of a model let go at `angle`.
+fn read_by(model: &Model, mut motion: Motion, angle: f64) -> Motion {
     let start = Start {
         angle_rad: vec![angle],
         speed_rad_s: vec![0.0],
@@ -247,4 +252,42 @@ fn an_effect_that_is_not_there_is_refused_for_want_of_better_values() {
     assert!(error.after_rad <= error.before_rad);
     let why = crate::fitting::Unhelpful::NotFound(error).why(&["stribeck@1".to_string()]);
     assert!(why.contains("did not find a better value"), "{why}");
+}
+
+/// A ripple whose number per turn lies between those that fits start from, too far from each: only
+/// who knows it finds it.
+#[test]
+fn values_that_are_known_are_started_from_and_never_left_for_worse() {
+    let input = "input = { column = \"u\", unit = \"N m\" }\n";
+    let arm = PENDULUM.replace("passive", "torque") + input;
+    let believed = Model::parse(&arm, Path::new("arm.toml")).unwrap();
+    let mut truth = believed.clone();
+    truth
+        .effects
+        .push(candidate("cogging").instance(&[0.1, 117.0, 0.4]));
+    let unforced = |angle: f64| {
+        let mut motion = swing(&pendulum(), angle);
+        motion.input = vec![Some(vec![0.0; motion.len()])];
+        read_by(&truth, motion, angle)
+    };
+    let split = Split {
+        training: vec![unforced(0.6), unforced(-0.4)],
+        held_out: Vec::new(),
+    };
+    let ripple = [candidate("cogging")];
+    let known = ripple[0].paths().zip([0.11, 117.02, 0.38]);
+    let known: Vec<_> = known.collect();
+    let added = refit_from(&believed, &ripple, &known, &split, None, &|_| {}).unwrap();
+    assert!(
+        (added.values[1].value - 117.0).abs() < 0.05,
+        "{:?}",
+        added.values
+    );
+    let data = FitData::new(&believed, split.training.clone(), Horizon::Whole);
+    let true_rad = fit_start_states(&truth, &data).rms(&data);
+    assert!(
+        added.fitted_rad[1] <= true_rad * 1.0001,
+        "{:?} {true_rad}",
+        added.fitted_rad
+    );
 }
