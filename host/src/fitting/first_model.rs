@@ -9,22 +9,27 @@
 //! beside it.
 
 mod settling;
+mod steps;
+#[cfg(test)]
+mod tests;
 mod values;
 
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::horizon::Horizon;
+use super::progress::Progress;
 use super::solve::fit;
 use super::step_size::coarsened;
 use super::ways::best_fit;
 use crate::error::Result;
-use crate::log::init::Draft;
+use crate::log::init::{Draft, Estimate};
 use crate::log::{LogRequest, Motion, excerpts, read};
 use crate::model::{AngleZero, Drive, LinkField, Model, ParameterPath};
 use crate::output::number::{measured, mrad};
 use rayon::prelude::*;
 use settling::{Settled, Settling};
 use std::path::Path;
+use steps::Steps;
 use values::{free_of, is_friction, rubbing, starts};
 
 /// Length of the windows, s, that the best is fitted to: little friction shows in them, too.
@@ -59,11 +64,15 @@ struct FittedMeaning {
 
 /// Replaces a draft's guesses by what its log tells, adds plain friction, and notes each estimate
 /// with its 95 % interval among the draft's guesses. A log that is refused, or in which nothing
-/// moves, leaves the draft as it is, and a note says why.
+/// moves, leaves the draft as it is, and a note says why. `progress` hears what is being done.
 ///
 /// # Errors
 /// Figures that make no model.
-pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
+pub fn estimate(
+    draft: &mut Draft,
+    request: &LogRequest,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<()> {
     let drafted = Model::parse(&draft.toml()?, Path::new("model.toml"))?;
     let motions = match read(std::slice::from_ref(request), &drafted.log) {
         Ok(motions) => motions,
@@ -77,7 +86,8 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
         }
     };
     let rubbing = rubbing(&drafted, &motions);
-    let Some(best) = best_meaning(&rubbing, draft, &motions) else {
+    let steps = Steps::new(meanings(&drafted, draft).len(), progress);
+    let Some(best) = best_meaning(&rubbing, draft, &motions, &steps) else {
         draft.note("values", "guesses alone", "nothing moves in the log");
         return Ok(());
     };
@@ -103,14 +113,20 @@ pub fn estimate(draft: &mut Draft, request: &LogRequest) -> Result<()> {
     };
     begun.iter_mut().for_each(|model| model.angle_zero = *zero);
     begun.push(best.model);
-    let fitted = begun.par_iter().map(|model| best_fit(model, &free, &data));
+    steps.fits(begun.len());
+    let fitted = begun.par_iter().map(|model| {
+        let fit = best_fit(model, &free, &data);
+        steps.fitted();
+        fit
+    });
     let Some(best) = fitted.min_by(|a, b| cost(a).total_cmp(&cost(b))) else {
         return Ok(());
     };
+    steps.settling();
     let settled = Settling {
         drafted: &drafted,
         data: &data,
-        mass_is_known: draft.is_known("mass"),
+        mass_is_known: draft.columns.knows_links || draft.is_known("mass"),
     }
     .settle(&best.model, free);
     write_down(draft, &drafted, settled);
@@ -125,10 +141,10 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
     draft.free = Some(values.iter().map(|(path, _)| path.to_string()).collect());
     let states_torque = |drive: &Drive| drive.name() == "torque";
     if !values.is_empty() && !drafted.joints.iter().any(|j| states_torque(&j.drive)) {
-        let why = if draft.is_known("mass") {
-            "as you say"
-        } else {
-            "a guess: weigh it, --mass"
+        let why = match (draft.columns.knows_links, draft.is_known("mass")) {
+            (true, _) => "the log says it",
+            (false, true) => "as you say",
+            (false, false) => "a guess: weigh it, --mass",
         };
         draft.note(
             "scale",
@@ -160,6 +176,8 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
             Some(told) => {
                 let words = measured(value, told.low, told.high, path.unit());
                 draft.note(&name, &words, "estimated from the log");
+                let (low, high) = (told.low, told.high);
+                draft.estimates.push(Estimate { path, low, high });
             }
             None => {
                 let words = format!("{} {}", rounded(value), path.unit());
@@ -177,7 +195,12 @@ fn windows(model: &Model, motions: Vec<Motion>, seconds: f64) -> FitData {
 
 /// The meaning of the log that a rough fit explains best; the drafted one unless another is clearly
 /// better. None where nothing moves.
-fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<FittedMeaning> {
+fn best_meaning(
+    model: &Model,
+    draft: &Draft,
+    motions: &[Motion],
+    steps: &Steps,
+) -> Option<FittedMeaning> {
     let few = windows(model, excerpts(motions, FEW), SHORT_S);
     if few.windows.is_empty() || !moves(&few) {
         return None;
@@ -193,13 +216,10 @@ fn best_meaning(model: &Model, draft: &Draft, motions: &[Motion]) -> Option<Fitt
             ..model.clone()
         };
         let screened = starts(&begun, &free).into_par_iter().map(|start| {
-            fit(
-                &start,
-                &free,
-                &data,
-                None,
-                FitOptions::iterations(SCREENING).rough(),
-            )
+            let options = FitOptions::iterations(SCREENING).rough();
+            let found = fit(&start, &free, &data, None, options);
+            steps.screened();
+            found
         });
         let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let best = best.resume(&data, FitOptions::iterations(ON).rough());

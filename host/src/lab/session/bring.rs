@@ -67,7 +67,7 @@ impl LabSession {
         let Some((mut draft, request)) = self.drafted(saved, None) else {
             return Ok(None);
         };
-        estimate(&mut draft, &request)?;
+        estimate(&mut draft, &request, &|_| {})?;
         Ok(Some(draft))
     }
 
