@@ -17,9 +17,9 @@ const STILL: f64 = 4.0;
 /// A hand trembles and tires: it also holds what stays within so many times that, as long as the
 /// model falls as much further.
 const TREMBLES: [f64; 3] = [1.0, 4.0, 16.0];
-/// A hold that a wider band shows counts where it lasts so many times as long as within a narrower
-/// one.
-const LONGER: usize = 2;
+/// A hold that a wider band shows counts where it lasts longer than within a narrower one by a
+/// quarter and so many samples: the begin of a fall stays within a wide band.
+const LONGER: usize = 4;
 /// Least samples of a hold. Fewer say nothing of noise.
 const LEAST_HOLD: usize = 3;
 /// The model must move so many times further than that while it is held.
@@ -42,7 +42,8 @@ pub(super) fn held_by_hand(model: &Model, motions: &[Motion]) -> Option<LeaveOut
             let run = still.at_start()?;
             is_held(model, still, &run).then_some(run)
         });
-        let is_longer = |run: &Range<usize>, than: &Range<usize>| run.len() > LONGER * than.len();
+        let is_longer =
+            |run: &Range<usize>, than: &Range<usize>| 4 * run.len() > 5 * than.len() + 4 * LONGER;
         let first = held.reduce(|narrow, wide| match is_longer(&wide, &narrow) {
             true => wide,
             false => narrow,
@@ -195,19 +196,19 @@ impl Pull {
     }
 
     /// Angle from hanging, -pi to pi.
-    fn from_hanging(&self, angle_rad: f64) -> f64 {
+    fn off_hanging(&self, angle_rad: f64) -> f64 {
         let angle = angle_rad - self.hanging_rad;
         angle - TAU * (angle / TAU).round()
     }
 
     /// Its size, rad/s^2.
     fn at(&self, angle_rad: f64) -> f64 {
-        (self.most_rad_s2 * self.from_hanging(angle_rad).sin()).abs()
+        (self.most_rad_s2 * self.off_hanging(angle_rad).sin()).abs()
     }
 
     /// What it has given at rest, from hanging up to an angle, rad^2/s^2.
     fn energy(&self, angle_rad: f64) -> f64 {
-        self.most_rad_s2 * (1.0 - self.from_hanging(angle_rad).cos())
+        self.most_rad_s2 * (1.0 - self.off_hanging(angle_rad).cos())
     }
 }
 
@@ -249,7 +250,7 @@ impl Swing<'_> {
     fn least_friction_rad_s2(&self, turning: &[usize]) -> f64 {
         let swings = turning.windows(2).filter_map(|pair| {
             let [from, to] = [pair[0], pair[1]].map(|k| self.angle(k));
-            let [begin, end] = [from, to].map(|angle| self.pull.from_hanging(angle));
+            let [begin, end] = [from, to].map(|angle| self.pull.off_hanging(angle));
             let lost = self.pull.energy(from) - self.pull.energy(to);
             (begin * end < 0.0).then(|| lost.max(0.0) / (begin.abs() + end.abs()))
         });

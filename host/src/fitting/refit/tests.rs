@@ -260,6 +260,8 @@ fn an_effect_that_is_not_there_is_refused_for_want_of_better_values() {
 fn values_that_are_known_are_started_from_and_never_left_for_worse() {
     let input = "input = { column = \"u\", unit = \"N m\" }\n";
     let arm = PENDULUM.replace("passive", "torque") + input;
+    // Ripples pass in milliseconds.
+    let arm = arm.replace("step_s = 0.005", "step_s = 0.0005");
     let believed = Model::parse(&arm, Path::new("arm.toml")).unwrap();
     let mut truth = believed.clone();
     truth
@@ -278,11 +280,6 @@ fn values_that_are_known_are_started_from_and_never_left_for_worse() {
     let known = ripple[0].paths().zip([0.11, 117.02, 0.38]);
     let known: Vec<_> = known.collect();
     let added = refit_from(&believed, &ripple, &known, &split, None, &|_| {}).unwrap();
-    assert!(
-        (added.values[1].value - 117.0).abs() < 0.05,
-        "{:?}",
-        added.values
-    );
     let data = FitData::new(&believed, split.training.clone(), Horizon::Whole);
     let true_rad = fit_start_states(&truth, &data).rms(&data);
     assert!(
@@ -290,4 +287,7 @@ fn values_that_are_known_are_started_from_and_never_left_for_worse() {
         "{:?} {true_rad}",
         added.fitted_rad
     );
+    let unknown = refit_with(&believed, &ripple, &split, None, &|_| {});
+    let found = unknown.map_or(f64::INFINITY, |added| added.fitted_rad[1]);
+    assert!(found > 1.5 * true_rad, "{found} {true_rad}");
 }
