@@ -66,7 +66,7 @@ impl LogHeader {
             let Some(text) = lines.next()? else {
                 return Err(Error::refused(Place::file(path), LogReason::NoHeader));
             };
-            if text.trim().is_empty() {
+            if text.trim().is_empty() || (number == 1 && says_separator(text)) {
                 continue;
             }
             let text = text.to_string();
@@ -221,6 +221,13 @@ fn unquoted(field: &str) -> &str {
         .strip_prefix('"')
         .and_then(|rest| rest.strip_suffix('"'));
     inner.unwrap_or(field)
+}
+
+/// Whether a line is the first of Excel's, `sep=;`. The names tell the same.
+fn says_separator(line: &str) -> bool {
+    let line = line.trim().to_ascii_lowercase();
+    let sign = line.strip_prefix("sep=");
+    sign.is_some_and(|sign| sign.chars().count() <= 1)
 }
 
 /// The separator of a header line: the most frequent of `;`, tab, `|` and comma.

@@ -123,6 +123,9 @@ fn names_in_comments_and_blanks_between_fields_are_read() {
         plain.replace(',', " | ").replace('.', ","),
         plain.replace(',', " ").replace('.', ","),
         plain.replace('\n', "\r"),
+        // Excel says its separator first.
+        format!("sep=,\n{plain}"),
+        format!("sep=;\r\n{}", plain.replace(',', ";")),
     ];
     for text in dialects {
         let motions = read_text(&text, &columns()).unwrap_or_else(|e| panic!("{e}\n{text}"));
