@@ -89,6 +89,7 @@ impl AddArgs {
         };
         let candidates = candidates_named(&names, model)?;
         let start = diagnosis.values(&candidates, model)?;
+        let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
         let (names, file) = (names.join(", "), file.display());
         match start.is_empty() {
             true => talk.say(&format!(
