@@ -89,7 +89,7 @@ pub fn init(
             draft.set_links(what, &values).map_err(exception)?;
         }
     }
-    estimate(&mut draft, &asked).map_err(told)?;
+    estimate(&mut draft, &asked, &|_| {}).map_err(told)?;
     let text = draft.toml().map_err(exception)?;
     Ok(Draft {
         model: Model::of(text, PathBuf::from("model.toml")).map_err(exception)?,

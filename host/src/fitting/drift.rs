@@ -4,7 +4,8 @@
 use super::data::FitData;
 use super::fitted_value::FittedValue;
 use super::horizon::Horizon;
-use super::refit::{ToldValues, Undetermined, told_apart, told_values};
+use super::refit::{Undetermined, told_apart};
+use super::told_values::{ToldValues, told_values};
 use super::ways::{best_fit, stated};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};

@@ -52,6 +52,7 @@ mod stairs;
 mod step;
 mod step_size;
 mod student;
+mod told_values;
 mod ways;
 mod windows;
 
