@@ -12,14 +12,24 @@
 //! $ handstand add arm.toml delay --fit a.csv b.csv --holdout c.csv -o better.toml
 //! ```
 //!
+//! `--from` takes the diagnosis that `diagnose --json` printed: its effects are added unless others are
+//! named, and the fit starts from its values, so that it leaves no more of the motions fitted.
+//!
+//! ```console
+//! $ handstand diagnose arm.toml a.csv b.csv --holdout c.csv --json > diagnosis.json
+//! $ handstand add arm.toml --from diagnosis.json --fit a.csv b.csv --holdout c.csv -o better.toml
+//! ```
+//!
 //! Exit code 1, and no file, when the logs do not determine the values, when the fit did not find
 //! any that reduce the error of the motions fitted by a thousandth at least, or when that on the
 //! motions held out is not reduced by as much. `--json` prints what `handstand fit`
 //! prints, and `effects`, as `["delay@1"]`.
 
 use super::{ExitStatus, Talk, fit, input};
-use handstand::fitting::{Addition, Unhelpful, add_effects, candidates_named};
+use handstand::fitting::{Addition, Candidate, Unhelpful, add_effects_from, candidates_named};
 use handstand::log::LogRequest;
+use handstand::model::ParameterPath;
+use handstand::report::DiagnosisFile;
 use handstand::{Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -30,8 +40,12 @@ pub struct AddArgs {
     /// Model file
     model: PathBuf,
     /// The effects: `delay`, or `coulomb@2` where there are several joints
-    #[arg(required = true, value_name = "EFFECT")]
+    #[arg(required_unless_present = "from", value_name = "EFFECT")]
     effects: Vec<String>,
+    /// Diagnosis that `diagnose --json` wrote: adds what it found unless effects are named, and
+    /// starts from its values
+    #[arg(long, value_name = "DIAGNOSIS.json")]
+    from: Option<PathBuf>,
     /// Logs to fit
     #[arg(long = "fit", required = true, num_args = 1..)]
     #[arg(value_name = "LOG", value_parser = input::log)]
@@ -44,12 +58,12 @@ pub struct AddArgs {
 pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
     let text = input::model_text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
-    let candidates = candidates_named(&args.effects, &model)?;
+    let (candidates, start) = args.asked(&model, talk)?;
     let split = args.fit.motions(&model, &args.logs, talk)?;
     let horizon = args.fit.judging.run.horizon;
     let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
     let (path, progress) = (&args.model, talk.progress());
-    let added = add_effects(&text, path, &candidates, &split, horizon, &progress)?;
+    let added = add_effects_from(&text, path, &candidates, &start, &split, horizon, &progress)?;
     // Nothing is printed beside the bar.
     drop(progress);
     match added {
@@ -61,6 +75,39 @@ pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
         Addition::Undetermined(why) => fit::refuse(&why, talk),
     }
 }
+
+impl AddArgs {
+    /// The effects to add, and the values to start from.
+    fn asked(&self, model: &Model, talk: &Talk) -> Result<Asked> {
+        let Some(file) = &self.from else {
+            return Ok((candidates_named(&self.effects, model)?, Vec::new()));
+        };
+        let diagnosis = DiagnosisFile::read(file)?;
+        let names = match self.effects.as_slice() {
+            [] => diagnosis.effects()?,
+            named => named.to_vec(),
+        };
+        let candidates = candidates_named(&names, model)?;
+        let start = diagnosis.values(&candidates, model)?;
+        let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
+        let (names, file) = (names.join(", "), file.display());
+        match start.is_empty() {
+            true => talk.say(&format!(
+                "{file} gives no values of {names}: none is started from"
+            )),
+            false => talk.say(&format!("{names}: from the values of {file}")),
+        }
+        for path in diagnosis.wrong_values() {
+            talk.say(&format!(
+                "{file}: `{path}` is wrong as well; `handstand fit --free {path}`"
+            ));
+        }
+        Ok((candidates, start))
+    }
+}
+
+/// Effects, and values to start from.
+type Asked = (Vec<Candidate>, Vec<(ParameterPath, f64)>);
 
 /// Says that the effects do not help, and writes nothing.
 fn refuse(unhelpful: &Unhelpful, names: &[String], talk: &Talk) -> Result<ExitStatus> {

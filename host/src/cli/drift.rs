@@ -12,7 +12,8 @@
 //!
 //! Exit code 1 when fewer than two logs determine the values. `--json` prints `sessions` and
 //! `joints` (`path`, `unit`, `values`: `of`, `path`, `key`, `unit`, `value`, `low`, `high`,
-//! `on_bound`, `stands_out`; `mean`, `probability`, `differ`) and `refused` (name and reason).
+//! `on_bound`, `stands_out`; `mean`, `probability`, `differ`), `refused` (name and reason) and `held`
+//! (name, and which value shows nothing there beside others of its effect, so that it is held).
 
 use super::{ExitStatus, Talk, input, show};
 use handstand::Result;
@@ -68,6 +69,8 @@ fn said(found: &DriftReport) -> String {
     parts.extend(found.joints.iter().map(|drift| of(drift, "Joint")));
     let refused = found.refused.iter();
     parts.extend(refused.map(|(name, why)| format!("refused: {name}: {why}")));
+    let held = found.held.iter();
+    parts.extend(held.map(|(name, sentence)| format!("{name}: {sentence}")));
     parts.join("\n\n")
 }
 

@@ -12,7 +12,8 @@
 //! ```
 //!
 //! Without `-o` the file's text goes to stdout. `--json` prints `file` (or null), `text` (null
-//! where a file was written) and `guesses` (`what`, `guess`, `why`).
+//! where a file was written), `guesses` (`what`, `guess`, `why`) and `values` (`path`, `value`, `low`
+//! and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`).
 
 use super::{ExitStatus, Talk, input};
 use handstand::fitting::{StopSwitch, estimate};
@@ -78,8 +79,10 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
         ask(args, &mut draft)?;
     }
     let said = draft.guesses.len();
-    let stop = StopSwitch::default();
-    estimate(&mut draft, &args.log, &stop, &talk.progress())?;
+    let progress = talk.progress();
+    estimate(&mut draft, &args.log, &StopSwitch::default(), &progress)?;
+    // Nothing is printed beside the bar.
+    drop(progress);
     for guess in draft.guesses.iter().skip(said) {
         talk.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
     }
@@ -94,6 +97,7 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
         "file": args.output,
         "text": (!written).then_some(&text),
         "guesses": draft.guesses,
+        "values": draft.values()?,
     });
     if talk.json {
         talk.data(&data)?;

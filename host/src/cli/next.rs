@@ -25,8 +25,8 @@ use super::{ExitStatus, Talk};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose_logs};
 use handstand::experiment::{
-    Criterion, ExperimentLimits, ExperimentProposal, FollowUp, ProposeOptions, inputs_alone,
-    is_replayable, propose, propose_values,
+    Criterion, ExperimentLimits, ExperimentProposal, FollowUp, ProposeOptions, can_be_moved,
+    inputs_alone, is_replayable, propose, propose_values,
 };
 use handstand::fitting::{Horizon, effect_ids, free_parameters};
 use handstand::log::{LogRequest, LogSet, to_csv};
@@ -104,6 +104,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     effect_ids(&args.without)?;
     let mut model = input::model(&args.model)?;
     model.hinges_only("proposed motions are for servos that turn")?;
+    can_be_moved(&model)?;
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));
     let logs = input::log_set(&args.logs, &args.judging.holdout);

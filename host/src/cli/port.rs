@@ -3,7 +3,6 @@
 use super::bus::garbled_words;
 use super::{Talk, simulated};
 use handstand::deploy::balance::AttitudeSource;
-use handstand::link::record::no_response;
 use handstand::link::{Answering, Protocol, Serial, SerialLink, Servos, Tap, id_ranges, ports};
 use handstand::{Error, Result};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
@@ -162,7 +161,11 @@ pub fn chosen(
     let ids = found.ids();
     say_found(&found, talk);
     match ids.is_empty() {
-        true => Err(no_response()),
+        true => Err(Error::device(
+            "no servo of ids 1-18 answers",
+            "`handstand bus scan` looks for others, --ids names them; of none, `handstand bus \
+             doctor` finds the cause",
+        )),
         false => Ok(ids),
     }
 }

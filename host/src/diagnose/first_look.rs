@@ -34,7 +34,7 @@ pub(super) fn best_third(mut of_candidates: Vec<f64>) -> f64 {
 /// The squared error up to which a candidate belongs to the best few.
 fn best_few(mut of_candidates: Vec<f64>) -> f64 {
     of_candidates.sort_by(f64::total_cmp);
-    let last = of_candidates.iter().take(FINALISTS).last();
+    let last = of_candidates[..of_candidates.len().min(FINALISTS)].last();
     last.copied().unwrap_or(f64::INFINITY)
 }
 

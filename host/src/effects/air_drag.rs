@@ -17,6 +17,8 @@ static INFO: EffectInfo = EffectInfo {
         "quadratic damping",
         "fluid drag",
         "windage",
+        "wind",
+        "wind resistance",
         "damping",
     ],
     site: Site::Joint,

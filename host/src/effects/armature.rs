@@ -33,6 +33,7 @@ static INFO: EffectInfo = EffectInfo {
     title: "armature inertia",
     aliases: &[
         "rotor inertia",
+        "rotor",
         "motor inertia",
         "reflected inertia",
         "gear inertia",

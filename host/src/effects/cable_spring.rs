@@ -14,6 +14,8 @@ static INFO: EffectInfo = EffectInfo {
         "cable drag",
         "wire stiffness",
         "harness",
+        "hose",
+        "wire",
         "parallel spring",
         "joint spring",
         "spring",

@@ -25,6 +25,8 @@ static INFO: EffectInfo = EffectInfo {
     aliases: &[
         "compliance",
         "elasticity",
+        "elastic",
+        "flex",
         "flexibility",
         "flexible joint",
         "joint elasticity",

@@ -11,6 +11,7 @@ static INFO: EffectInfo = EffectInfo {
     title: "supply sag",
     aliases: &[
         "voltage drop",
+        "sag",
         "voltage sag",
         "battery sag",
         "internal resistance",

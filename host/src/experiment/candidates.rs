@@ -43,10 +43,27 @@ impl Experiment {
     }
 }
 
+/// Whether a motion can be asked of a rig.
+///
+/// # Errors
+/// None of its joints is driven.
+pub fn can_be_moved(model: &Model) -> Result<()> {
+    if !model.driven_joints().is_empty() {
+        return Ok(());
+    }
+    Err(Error::usage(
+        format!(
+            "no joint of `{}` is driven, so no motion can be asked of it",
+            model.name
+        ),
+        "let it swing by hand from other angles, or with a known mass on the last link",
+    ))
+}
+
 /// All experiments within the limits; `model` is the explanation that tracks the goals.
 ///
 /// # Errors
-/// Limits that no motion can be held in.
+/// Limits that no motion can be held in; as [`can_be_moved`].
 pub(super) fn experiments(
     model: &Model,
     limits: &ExperimentLimits,
@@ -54,15 +71,7 @@ pub(super) fn experiments(
     seed: u64,
 ) -> Result<Vec<Experiment>> {
     limits.check()?;
-    if model.driven_joints().is_empty() {
-        return Err(Error::usage(
-            format!(
-                "no joint of `{}` is driven, so no motion can be asked of it",
-                model.name
-            ),
-            "let it swing by hand from other angles, or with a known mass on the last link",
-        ));
-    }
+    can_be_moved(model)?;
     let mut planned: Vec<(f64, Excitation)> = Vec::new();
     let mut refused = None;
     for width in WIDTHS {

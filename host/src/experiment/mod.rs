@@ -25,6 +25,7 @@ mod tighten;
 #[cfg(test)]
 mod tests;
 
+pub use candidates::can_be_moved;
 pub use condition::Condition;
 pub use follow_up::FollowUp;
 pub use limits::ExperimentLimits;

@@ -4,10 +4,10 @@ use super::candidate::{Candidate, CandidateError};
 use super::error_reduction::ErrorReduction;
 use super::horizon::Horizon;
 use super::progress::Progress;
-use super::refit::{MOST_LEFT, NotAdded, Refitted, Undetermined, refit_with};
+use super::refit::{MOST_LEFT, NotAdded, Refitted, Undetermined, refit_from};
 use crate::error::Result;
 use crate::log::{Motion, Split};
-use crate::model::{Model, edit};
+use crate::model::{Model, ParameterPath, edit};
 use crate::output::number::mrad;
 use std::path::Path;
 
@@ -110,8 +110,25 @@ pub fn add_effects(
     horizon: Option<Horizon>,
     progress: &dyn Fn(Progress),
 ) -> Result<Addition> {
+    add_effects_from(text, path, candidates, &[], split, horizon, progress)
+}
+
+/// The same from values that are known already, as those of a diagnosis: of the effects, and of
+/// what is free beside them. On the motions fitted it leaves no more than with these.
+///
+/// # Errors
+/// As [`add_effects`].
+pub fn add_effects_from(
+    text: &str,
+    path: &Path,
+    candidates: &[Candidate],
+    start: &[(ParameterPath, f64)],
+    split: &Split,
+    horizon: Option<Horizon>,
+    progress: &dyn Fn(Progress),
+) -> Result<Addition> {
     let model = Model::parse(text, path)?;
-    let refitted = match refit_with(&model, candidates, split, horizon, progress) {
+    let refitted = match refit_from(&model, candidates, start, split, horizon, progress) {
         Ok(refitted) => Box::new(refitted),
         Err(NotAdded::Undetermined(why)) => return Ok(Addition::Undetermined(why)),
         Err(NotAdded::NotBetter(error)) => {

@@ -39,6 +39,9 @@ pub(super) struct AddedEffects<'a> {
     /// What is free: the model's own values, then the effects'.
     pub free: &'a [ParameterPath],
     pub data: &'a FitData,
+    /// Values of the effects, and of what is free beside them, that are to be improved on; none of
+    /// effects that nothing is known of.
+    pub start: &'a [(ParameterPath, f64)],
 }
 
 /// A fit in windows, and these.
@@ -54,7 +57,7 @@ impl AddedEffects<'_> {
     /// Steps of progress at most: the start values and the ways.
     pub fn steps(&self) -> usize {
         let starts = self.candidates.iter().map(|c| c.starts().len());
-        starts.sum::<usize>() + WAYS
+        starts.sum::<usize>() + WAYS + usize::from(!self.start.is_empty())
     }
 
     /// The best fit with the effects; none worse than `base`, the best one without them, as far as
@@ -87,7 +90,12 @@ impl AddedEffects<'_> {
         let direct = || (Route::Direct, directly(&given, self.free, self.data));
         let short = |from: &InWindows| (Route::Short, self.end_of(from, &[]));
         let longer = |from: &InWindows| (Route::Longer, self.end_of(from, LONGER_S));
-        let mut ways: [Way; WAYS] = [
+        // First, so that what is found never leaves more than the start.
+        let known = self.started().map(|start| {
+            let way = move || Some((Route::Direct, directly(&start, self.free, self.data)));
+            Box::new(way) as Way
+        });
+        let ways: [Way; WAYS] = [
             Box::new(|| Some(short(guessed))),
             Box::new(|| Some(direct())),
             Box::new(|| Some(longer(guessed))),
@@ -95,6 +103,7 @@ impl AddedEffects<'_> {
             Box::new(|| Some(short(started()))),
             Box::new(|| Some(longer(started()))),
         ];
+        let mut ways: Vec<Way> = known.into_iter().chain(ways).collect();
         let found = lowest(ways.iter_mut().filter_map(|way| {
             let found = way();
             step();
@@ -192,6 +201,28 @@ impl AddedEffects<'_> {
         let mut stages = Stages::after(&short.fit, &short.windows, self.free, self.data);
         stages.through(lengths_s);
         stages.end(FitOptions::default())
+    }
+
+    /// The model with the effects at their known values, where all are known.
+    fn started(&self) -> Option<Model> {
+        let known = |path: &ParameterPath| {
+            let mut own = self.start.iter().filter(|(known, _)| known == path);
+            own.next().map(|(_, value)| *value)
+        };
+        let mut model = self.model.clone();
+        for candidate in self.candidates {
+            let values: Option<Vec<f64>> = candidate.paths().map(|path| known(&path)).collect();
+            model.effects.push(candidate.instance(&values?));
+        }
+        for (path, value) in self
+            .start
+            .iter()
+            .filter(|(path, _)| self.free.contains(path))
+        {
+            let (low, high) = path.bounds(&model);
+            let _ = path.set(&mut model, value.clamp(low, high));
+        }
+        Some(model)
     }
 
     /// The model as it was given, with the effects as they are in another.

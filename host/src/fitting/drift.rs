@@ -2,9 +2,10 @@
 //! itself, then a test of homogeneity (Cochran 1954, Biometrics 10, 101).
 
 use super::data::FitData;
-use super::fitted_value::{FittedValue, fitted_values};
+use super::fitted_value::FittedValue;
 use super::horizon::Horizon;
-use super::refit::{Undetermined, told_apart, undetermined_by};
+use super::refit::{Undetermined, told_apart};
+use super::told_values::{ToldValues, told_values};
 use super::ways::{best_fit, stated};
 use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
@@ -66,6 +67,9 @@ pub struct DriftReport {
     pub joints: Vec<Drift>,
     /// Sessions that do not determine the values, and why.
     pub refused: Vec<(String, String)>,
+    /// Sessions in which a value shows nothing beside others of its effect, and at what it is held
+    /// there.
+    pub held: Vec<(String, String)>,
 }
 
 /// Fits `free` to each session by itself, and compares.
@@ -80,29 +84,40 @@ pub fn drift(
         let data = FitData::new(model, session.motions.clone(), horizon);
         let found = best_fit(model, free, &data);
         told_apart(&found)?;
-        let found = stated(found, &data);
-        match fitted_values(&found, &data) {
-            (values, Some(_)) => Ok(values),
-            _ => Err(undetermined_by(&found, &data)),
-        }
+        told_values(stated(found, &data), &data)
     });
-    let fitted: Vec<Result<Vec<FittedValue>, Undetermined>> = fitted.collect();
-    let (mut refused, mut known) = (Vec::new(), Vec::new());
-    for (session, values) in sessions.iter().zip(fitted) {
-        match values {
-            Ok(values) => known.push((session.name.clone(), values)),
-            Err(why) => refused.push((session.name.clone(), why.to_string())),
+    let fitted: Vec<Result<ToldValues, Undetermined>> = fitted.collect();
+    let (mut refused, mut held, mut known) = (Vec::new(), Vec::new(), Vec::new());
+    for (session, told) in sessions.iter().zip(fitted) {
+        let name = || session.name.clone();
+        match told {
+            Ok(told) => {
+                held.extend(told.held.into_iter().map(|sentence| (name(), sentence)));
+                known.push((name(), told.values));
+            }
+            Err(why) => refused.push((name(), why.to_string())),
         }
     }
-    let between_sessions = (0..free.len()).map(|index| {
-        let of = known.iter().map(|(name, values)| one(name, &values[index]));
-        (free[index].to_string(), of.collect())
-    });
-    let sessions = tested(between_sessions.collect());
+    // What a session holds, it does not tell.
+    let (mut paths, mut between_sessions) = (Vec::new(), Vec::new());
+    for path in free {
+        let address = path.to_string();
+        let of = known.iter().filter_map(|(name, values)| {
+            let own = values.iter().find(|value| value.path == address)?;
+            Some(one(name, own))
+        });
+        let of: Vec<OneValue> = of.collect();
+        if !of.is_empty() {
+            paths.push(*path);
+            between_sessions.push((address, of));
+        }
+    }
+    let sessions = tested(between_sessions);
     DriftReport {
-        joints: tested(between_joints(free, &sessions)),
+        joints: tested(between_joints(&paths, &sessions)),
         sessions,
         refused,
+        held,
     }
 }
 

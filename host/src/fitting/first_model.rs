@@ -11,6 +11,8 @@
 mod course;
 mod levers;
 mod settling;
+#[cfg(test)]
+mod tests;
 mod values;
 
 use super::data::FitData;
@@ -22,7 +24,7 @@ use super::solve::fit;
 use super::step_size::coarsened;
 use super::ways::best_fit;
 use crate::error::Result;
-use crate::log::init::Draft;
+use crate::log::init::{Draft, Estimate};
 use crate::log::{LogRequest, Motion, excerpts, read};
 use crate::model::{AngleZero, Drive, LinkField, Model, ParameterPath};
 use crate::output::number::{measured, mrad};
@@ -131,7 +133,7 @@ pub fn estimate(
     let settled = Settling {
         drafted: &drafted,
         data: &data,
-        mass_is_known: draft.is_known("mass"),
+        mass_is_known: draft.columns.knows_links || draft.is_known("mass"),
     }
     .settle(&best.model, free);
     write_down(draft, &drafted, settled);
@@ -146,10 +148,10 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
     draft.free = Some(values.iter().map(|(path, _)| path.to_string()).collect());
     let states_torque = |drive: &Drive| drive.name() == "torque";
     if !values.is_empty() && !drafted.joints.iter().any(|j| states_torque(&j.drive)) {
-        let why = if draft.is_known("mass") {
-            "as you say"
-        } else {
-            "a guess: weigh it, --mass"
+        let why = match (draft.columns.knows_links, draft.is_known("mass")) {
+            (true, _) => "the log says it",
+            (false, true) => "as you say",
+            (false, false) => "a guess: weigh it, --mass",
         };
         draft.note(
             "scale",
@@ -186,6 +188,8 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
             Some(told) => {
                 let words = measured(value, told.low, told.high, path.unit());
                 draft.note(&name, &words, "estimated from the log");
+                let (low, high) = (told.low, told.high);
+                draft.estimates.push(Estimate { path, low, high });
             }
             None => {
                 let words = format!("{} {}", rounded(value), path.unit());
@@ -226,13 +230,8 @@ fn best_meaning(
             ..model.clone()
         };
         let screened = starts(&begun, &free).into_par_iter().map(|start| {
-            fit(
-                &start,
-                &free,
-                &data,
-                None,
-                FitOptions::iterations(SCREENING).rough(),
-            )
+            let options = FitOptions::iterations(SCREENING).rough();
+            fit(&start, &free, &data, None, options)
         });
         let best = screened.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let best = best.resume(&data, FitOptions::iterations(ON).rough());

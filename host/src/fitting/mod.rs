@@ -52,10 +52,13 @@ mod stairs;
 mod step;
 mod step_size;
 mod student;
+mod told_values;
 mod ways;
 mod windows;
 
-pub use add::{Addition, Unhelpful, add_effects, candidates_named, with_refitted};
+pub use add::{
+    Addition, Unhelpful, add_effects, add_effects_from, candidates_named, with_refitted,
+};
 pub use candidate::{Candidate, CandidateError, effect_ids, effect_named};
 pub use covariance::{Interval, intervals, intervals_of};
 pub use data::FitData;
@@ -80,7 +83,7 @@ pub(crate) use polish::polish;
 pub use profile::profile_intervals;
 pub use progress::{BestSoFar, Progress};
 pub use projector::Projector;
-pub use refit::{NotAdded, Refitted, Undetermined, refit, refit_with};
+pub use refit::{NotAdded, Refitted, Undetermined, refit, refit_from, refit_with};
 pub use residual::{Residuals, predicted, residuals};
 pub(crate) use search_windows::{is_followed, search_horizons};
 pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_nodes};

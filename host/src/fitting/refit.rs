@@ -8,21 +8,20 @@ use super::added::AddedEffects;
 use super::data::FitData;
 use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
-use super::fitted_value::{FittedValue, fitted_values};
+use super::fitted_value::FittedValue;
 use super::horizon::Horizon;
 use super::mixture::untold_mixture;
 use super::polish::polish;
 use super::progress::{Progress, RefitSteps};
-use super::residual::residuals;
-use super::solve::{fit, fit_start_states};
+use super::solve::fit_start_states;
 use super::stairs::told_by_others;
+use super::told_values::{ToldValues, told_values};
 use super::ways::{best_fit, stated};
 use super::windows::MotionWindow;
 use crate::fitting::Candidate;
 use crate::log::Split;
 use crate::model::edit::FitRecord;
 use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
-use crate::output::number::exact;
 use std::cell::Cell;
 
 /// A refitted model.
@@ -183,6 +182,22 @@ pub fn refit_with(
     horizon: Option<Horizon>,
     progress: &dyn Fn(Progress),
 ) -> Result<Refitted, NotAdded> {
+    refit_from(model, candidates, &[], split, horizon, progress)
+}
+
+/// The same from values that are known already, of the effects and of what is free beside them: on
+/// the motions fitted none after it is larger than with these.
+///
+/// # Errors
+/// As [`refit_with`].
+pub fn refit_from(
+    model: &Model,
+    candidates: &[Candidate],
+    start: &[(ParameterPath, f64)],
+    split: &Split,
+    horizon: Option<Horizon>,
+    progress: &dyn Fn(Progress),
+) -> Result<Refitted, NotAdded> {
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitData::new(model, split.training.clone(), horizon);
     let mut free = model.free.clone();
@@ -195,6 +210,7 @@ pub fn refit_with(
         candidates,
         free: &free,
         data: &data,
+        start,
     };
     let steps = RefitSteps::new(added.steps());
     progress(steps.fitting());
@@ -246,18 +262,12 @@ impl Refit<'_> {
             found = told_by_others(found, data, judged);
         }
         let mut unobserved = model.log.notes();
-        let (mut values, mut told) = fitted_values(&found, data);
-        if told.is_none() {
-            let held = blind_beside_others(&found, data);
-            if !held.is_empty() {
-                found = with_held(found, &held, data);
-                (values, told) = fitted_values(&found, data);
-                unobserved.extend(held.iter().map(|path| said_of_held(path, &found.model)));
-            }
-        }
-        if told.is_none() {
-            return Err(undetermined_by(&found, data));
-        }
+        let ToldValues {
+            fit: found,
+            values,
+            held,
+        } = told_values(found, data)?;
+        unobserved.extend(held);
         let fitted = self.error_on_fitted(&found);
         let rms_rad = |model: &Model, data: &FitData| fit_start_states(model, data).rms(data);
         let mut windows = data.motion_windows(self.horizon);
@@ -301,61 +311,4 @@ impl Refit<'_> {
             reduction: None,
         }
     }
-}
-
-/// The blind parameters of effects of which another one tells: a dead zone whose commands begin at
-/// zero has a width below which nothing shows.
-fn blind_beside_others(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
-    let mut blind = blind(found, data);
-    let effect = |path: &ParameterPath| match path {
-        ParameterPath::Effect { id, joint, .. } => Some((*id, *joint)),
-        _ => None,
-    };
-    let all = blind.clone();
-    blind.retain(|path| {
-        let own = effect(path);
-        let tells = |other: &&ParameterPath| effect(other) == own && !all.contains(other);
-        own.is_some() && found.free.iter().any(|other| tells(&other))
-    });
-    blind
-}
-
-/// The fit with some values held where they are.
-fn with_held(mut found: Fit, held: &[ParameterPath], data: &FitData) -> Fit {
-    found.model.free.retain(|path| !held.contains(path));
-    let mut free = found.free;
-    free.retain(|path| !held.contains(path));
-    let options = FitOptions::default();
-    fit(&found.model, &free, data, Some(&found.nodes), options)
-}
-
-fn said_of_held(path: &ParameterPath, model: &Model) -> String {
-    let value = path.get(model).unwrap_or(f64::NAN);
-    format!(
-        "`{path}` changes nothing in these motions: it is held at {}.",
-        exact(value)
-    )
-}
-
-/// Why a fit has no intervals: the parameters that change nothing in the data.
-pub(super) fn undetermined_by(found: &Fit, data: &FitData) -> Undetermined {
-    let blind = blind(found, data);
-    Undetermined {
-        blind: blind.iter().map(ToString::to_string).collect(),
-        mixed: Vec::new(),
-    }
-}
-
-/// The free parameters whose change leaves every prediction as it was.
-fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
-    let base = residuals(&found.model, data, &found.nodes);
-    let changes_nothing = |path: &&ParameterPath| {
-        let value = path.get(&found.model).unwrap_or(0.0);
-        let (_, high) = path.bounds(&found.model);
-        let size = 1e-3 * value.abs().max(1e-3);
-        let size = if value + size > high { -size } else { size };
-        let mut moved = found.model.clone();
-        path.set(&mut moved, value + size) && residuals(&moved, data, &found.nodes) == base
-    };
-    found.free.iter().filter(changes_nothing).cloned().collect()
 }

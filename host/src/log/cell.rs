@@ -1,7 +1,7 @@
 //! What a cell of a text log says: a number, or that there is none.
 
 /// Words for a value that is not there, in lower case: of R, SQL, Python, Excel, Julia, C.
-const MISSING: [&str; 12] = [
+const MISSING: [&str; 19] = [
     "nan",
     "na",
     "n/a",
@@ -14,14 +14,26 @@ const MISSING: [&str; 12] = [
     "nat",
     "-nan(ind)",
     "nan(ind)",
+    "1.#qnan",
+    "1.#ind",
+    "<na>",
+    "undefined",
+    "#div/0!",
+    "#value!",
+    "#num!",
 ];
+
+/// Signs that stand where a value is missing.
+const DASHES: [&str; 4] = ["-", "--", "---", "\u{2013}"];
 
 /// Whether a field says that there is no value: empty, `nan`, `NA`, `NULL`, `None`, ..
 pub(super) fn is_missing(text: &str) -> bool {
     let is_number = text.as_bytes().iter().take(2).any(u8::is_ascii_digit);
     let plain = text.strip_prefix(['-', '+']).unwrap_or(text);
     text.is_empty()
-        || (!is_number
+        || DASHES.contains(&text)
+        // Microsoft's C writes a number that is none as 1.#QNAN.
+        || ((!is_number || text.contains('#'))
             && MISSING
                 .iter()
                 .any(|word| plain.eq_ignore_ascii_case(word) || text.eq_ignore_ascii_case(word)))
@@ -89,11 +101,12 @@ mod tests {
     #[test]
     fn words_for_nothing_are_gaps() {
         for text in [
-            "", "nan", "NaN", "NA", "N/A", "n/a", "NULL", "null", "None", "-nan", "#N/A",
+            "", "nan", "NaN", "NA", "N/A", "n/a", "NULL", "null", "None", "-nan", "#N/A", "<NA>",
+            "-", "--", "1.#QNAN", "-1.#IND",
         ] {
             assert!(is_missing(text), "{text}");
         }
-        for text in ["0", "-1", "x", "no", "inf", "-", "nano", "1nan"] {
+        for text in ["0", "-1", "x", "no", "inf", "-x", "nano", "1nan", "1.#"] {
             assert!(!is_missing(text), "{text}");
         }
     }

@@ -12,7 +12,7 @@ use std::path::Path;
 /// Hands every data row of a CSV log to `visitor`, with its number counted from 0.
 ///
 /// A row that cannot be read arrives as an error with file, line and column; the visitor decides
-/// whether that ends the reading. The separator (`,`, `;`, tab, blanks) comes from the header
+/// whether that ends the reading. The separator (`,`, `;`, tab, `|`, blanks) comes from the header
 /// line; byte-order mark, CR LF, quotes, blank lines, `#` and `%` comments are taken as they come.
 ///
 /// # Errors

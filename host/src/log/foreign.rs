@@ -190,7 +190,16 @@ static KINDS: &[FileKind] = &[
     kind(b"<!DOCTYPE html", "a web page", Convert(DOWNLOAD)),
     kind(b"<!doctype html", "a web page", Convert(DOWNLOAD)),
     kind(b"<html", "a web page", Convert(DOWNLOAD)),
+    kind(b"{\"", JSON, Convert(RECORDS)),
+    kind(b"{\n", JSON, Convert(RECORDS)),
+    kind(b"[{", JSON, Convert(RECORDS)),
+    kind(b"[\n", JSON, Convert(RECORDS)),
 ];
+
+const JSON: &str = "JSON";
+const RECORDS: &str = "save its records as CSV, in Python: pandas.read_json(\"FILE\")\
+                       .to_csv(\"STEM.csv\", index=False), with lines=True where each line is \
+                       one; a log of BAM is named STEM.json";
 
 const UTF_8: &str = "save it as UTF-8 (Excel: \"CSV UTF-8\"), or: iconv -f UTF-16 -t UTF-8 FILE > \
                      STEM-utf8.csv";
@@ -203,6 +212,21 @@ const ZIP: &[u8] = b"PK\x03\x04";
 pub(super) fn foreign(path: &Path, head: &[u8], format: LogFormat) -> Option<Error> {
     let (what, remedy) = known(path, head, format)?;
     Some(Error::data(Place::file(path), what, remedy))
+}
+
+/// Why a file that should be text is none, though no mark tells what it is: its first line holds
+/// bytes that no text has.
+pub(super) fn unknown_binary(path: &Path, head: &[u8]) -> Option<Error> {
+    let line = head.split(|byte| b"\r\n".contains(byte)).next()?;
+    // Terminals begin their colours with an escape.
+    let is_control = |byte: &&u8| **byte < b' ' && !b"\t\x0b\x0c\x1b".contains(byte);
+    let byte = line.iter().find(is_control)?;
+    Some(Error::data(
+        Place::at(path, 1, 1),
+        format!("this is no text: its first line holds the byte 0x{byte:02x}"),
+        "save the log as CSV from the program that wrote it; where a serial line left the byte, \
+         delete the line",
+    ))
 }
 
 /// What a file is that no format of logs reads; none of what no bytes tell.
@@ -231,6 +255,7 @@ fn known(path: &Path, head: &[u8], format: LogFormat) -> Option<(String, String)
     // MATLAB's version 7.3 is HDF5, also without its own first bytes.
     let own = match kind.way {
         Read(own) => own == format,
+        Convert(_) if kind.what == JSON => format == LogFormat::Bam,
         Convert(_) => format == LogFormat::Mat && kind.what == "an HDF5 file",
     };
     if own {

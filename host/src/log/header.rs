@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct LogHeader {
     /// The file, for errors.
     path: PathBuf,
-    /// Between two fields: `,`, `;`, tab or blanks.
+    /// Between two fields: `,`, `;`, tab, `|` or blanks.
     pub separator: u8,
     /// Column names in the file's order, trimmed.
     pub names: Vec<String>,
@@ -66,7 +66,7 @@ impl LogHeader {
             let Some(text) = lines.next()? else {
                 return Err(Error::refused(Place::file(path), LogReason::NoHeader));
             };
-            if text.trim().is_empty() {
+            if text.trim().is_empty() || (number == 1 && says_separator(text)) {
                 continue;
             }
             let text = text.to_string();
@@ -223,11 +223,18 @@ fn unquoted(field: &str) -> &str {
     inner.unwrap_or(field)
 }
 
-/// The separator of a header line: the most frequent of `;`, tab and comma.
+/// Whether a line is the first of Excel's, `sep=;`. The names tell the same.
+fn says_separator(line: &str) -> bool {
+    let line = line.trim().to_ascii_lowercase();
+    let sign = line.strip_prefix("sep=");
+    sign.is_some_and(|sign| sign.chars().count() <= 1)
+}
+
+/// The separator of a header line: the most frequent of `;`, tab, `|` and comma.
 pub(super) fn separator(line: &str) -> u8 {
     let count = |separator: u8| fields(line, separator).len();
     let mut best = b',';
-    for candidate in [b';', b'\t'] {
+    for candidate in [b';', b'\t', b'|'] {
         if count(candidate) > count(best) {
             best = candidate;
         }

@@ -95,6 +95,12 @@ mod tests {
             ..motion("b", 30)
         };
         assert!(said(copy).contains("copy is held out, and shares rows with b"));
+        // A reader's zero, and one of a column with a sign.
+        let mut zero = all.clone();
+        zero[0].position_rad[0][5] = 0.0;
+        let mut signed = zero[0].clone();
+        signed.position_rad[0][5] = -0.0;
+        assert!(Split::told_apart(zero, vec![signed]).is_err());
         let mut other = motion("a", 20);
         other.position_rad[0][7] += 1e-12;
         assert!(told(other).is_ok());

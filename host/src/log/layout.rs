@@ -25,7 +25,13 @@ impl Layout<'_> {
         let own = separator(self.names);
         let words = fields(self.names, BLANKS).len();
         let mut rows = self.rows().map(|(_, row)| row).peekable();
-        let blank = |row: &str| fields(row, own).len() == 1 && fields(row, BLANKS).len() == words;
+        // Commas in a row of numbers between blanks are decimal ones.
+        let blank = |row: &str| {
+            let cells = fields(row, BLANKS);
+            let is_value = |cell: &_| is_missing(cell) || number(cell, BLANKS).is_some();
+            cells.len() == words
+                && (fields(row, own).len() == 1 || cells.iter().all(|cell| is_value(cell)))
+        };
         match fields(self.names, own).len() == 1 && words > 1 && rows.peek().is_some() {
             true if rows.all(blank) => BLANKS,
             _ => own,

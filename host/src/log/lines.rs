@@ -1,6 +1,6 @@
 //! Reads a file line by line and hashes it; holds one line at a time.
 
-use super::foreign::{HEAD, foreign};
+use super::foreign::{HEAD, foreign, unknown_binary};
 use super::format::LogFormat;
 use super::reason::LogReason;
 use super::standard_input::{is_standard_input, standard_input};
@@ -18,11 +18,13 @@ pub(super) const LONGEST_LINE: usize = 1 << 20;
 /// Most bytes that are read ahead.
 const AHEAD: usize = 1 << 20;
 
-/// Lines of a text file without their ends (LF or CR LF) and without a byte-order mark.
+/// Lines of a text file without their ends (LF, CR LF, or CR alone) and without a byte-order mark.
 pub(super) struct Lines {
     path: PathBuf,
     reader: Box<dyn BufRead + Send>,
     hash: Sha256,
+    /// The last byte of each line.
+    end: u8,
     line: Vec<u8>,
     /// Lines that were read ahead, with their ends.
     ahead: VecDeque<Vec<u8>>,
@@ -46,13 +48,22 @@ impl Lines {
         let head = reader
             .fill_buf()
             .map_err(|source| Error::file(path, "read", source))?;
-        if let Some(error) = foreign(path, &head[..head.len().min(HEAD)], LogFormat::Csv) {
+        let head = &head[..head.len().min(HEAD)];
+        let other = foreign(path, head, LogFormat::Csv).or_else(|| unknown_binary(path, head));
+        if let Some(error) = other {
             return Err(error);
         }
+        let is_end = |end: u8| head.contains(&end);
+        let end = if is_end(b'\r') && !is_end(b'\n') {
+            b'\r'
+        } else {
+            b'\n'
+        };
         Ok(Lines {
             path: path.to_path_buf(),
             reader,
             hash: Sha256::new(),
+            end,
             line: Vec::new(),
             ahead: VecDeque::new(),
             number: 0,
@@ -68,7 +79,7 @@ impl Lines {
             Some(line) => self.line = line,
             None => {
                 self.line.clear();
-                read_line(&mut self.reader, &mut self.line, &self.path)?;
+                read_line(&mut self.reader, self.end, &mut self.line, &self.path)?;
             }
         }
         if self.line.is_empty() {
@@ -87,7 +98,7 @@ impl Lines {
             Err(_) if matches!(line.trim_ascii_start().first(), Some(b'#' | b'%')) => Ok(Some("#")),
             Err(error) => {
                 let before = &line[..error.valid_up_to()];
-                let separators = before.iter().filter(|byte| b",;\t".contains(byte));
+                let separators = before.iter().filter(|byte| b",;\t|".contains(byte));
                 let place = Place::at(&self.path, self.number, separators.count() + 1);
                 let byte = line[before.len()];
                 Err(Error::refused(place, LogReason::NotUtf8 { byte }))
@@ -104,7 +115,7 @@ impl Lines {
         let mut bytes: usize = self.ahead.iter().map(Vec::len).sum();
         while self.ahead.len() < count && bytes < AHEAD {
             let mut line = Vec::new();
-            read_line(&mut self.reader, &mut line, &self.path)?;
+            read_line(&mut self.reader, self.end, &mut line, &self.path)?;
             if line.is_empty() {
                 break;
             }
@@ -128,10 +139,10 @@ impl Lines {
 }
 
 /// Adds a line with its end, one byte more than is accepted at most; nothing at the end.
-fn read_line(reader: &mut dyn BufRead, line: &mut Vec<u8>, path: &Path) -> Result<()> {
+fn read_line(reader: &mut dyn BufRead, end: u8, line: &mut Vec<u8>, path: &Path) -> Result<()> {
     reader
         .take(LONGEST_LINE as u64 + 1)
-        .read_until(b'\n', line)
+        .read_until(end, line)
         .map(|_| ())
         .map_err(|source| Error::file(path, "read", source))
 }

@@ -44,9 +44,22 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Whether both hold the same samples, bit by bit, whatever they are called.
+    /// Whether both hold the same samples to the last digit, whatever they are called. A zero is one
+    /// with either sign, and a gap is a gap.
     pub fn holds_the_same(&self, other: &Motion) -> bool {
-        let bits = |row: &[f64]| row.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        let bits = |row: &[f64]| {
+            // -0.0 + 0.0 is 0.0.
+            let plain = |value: &f64| {
+                if value.is_nan() {
+                    f64::NAN
+                } else {
+                    value + 0.0
+                }
+            };
+            row.iter()
+                .map(|value| plain(value).to_bits())
+                .collect::<Vec<_>>()
+        };
         let same =
             |own: &[f64], theirs: &[f64]| own.len() == theirs.len() && bits(own) == bits(theirs);
         let rows = |own: &[Vec<f64>], theirs: &[Vec<f64>]| {

@@ -362,7 +362,10 @@ impl Reason for LogReason {
             RowsBeyond { .. } => "data rows count from 0, after the header",
             NoSample => "record again: below the column names there is no row",
             NotJson { .. } => "was the recording broken off? Record again, or export CSV",
-            NoEntries => "a BAM log is an object with a list 'entries'",
+            NoEntries => {
+                "a BAM log is an object with a list 'entries'; save the records of other JSON as \
+                 CSV, in Python: pandas.read_json(\"log.json\").to_csv(\"log.csv\", index=False)"
+            }
             EntryRange { .. } => "entries count from 0; record longer if there are too few",
             WrongEntry { .. } => {
                 "leave the entry out by a range such as log.json:0-99, or record again"

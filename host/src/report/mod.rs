@@ -3,6 +3,7 @@
 mod candidates;
 mod closed_loop;
 mod command;
+mod diagnosis_file;
 pub mod effect_page;
 mod failures;
 mod file_names;
@@ -30,6 +31,7 @@ mod verification;
 mod waterfall;
 mod words;
 
+pub use diagnosis_file::DiagnosisFile;
 pub use file_names::{file_name, file_names};
 pub use gains_page::{GainsReport, gains_page};
 pub use json::{diagnosis_json, gains_json, json};

@@ -116,3 +116,38 @@ fn nothing_is_overwritten_unasked() {
     assert_eq!(bench.run(&format!("{line} --force")).code, Some(0));
     assert_ne!(bench.get("kept.toml"), "mine");
 }
+
+/// What a diagnosis found is added from its file, from its values.
+#[test]
+fn a_diagnosis_is_added_from_its_file() {
+    let bench = Bench::new();
+    let found = bench.run("diagnose model.toml a.csv --holdout b.csv --json");
+    bench.put("d.json", &found.stdout);
+    let effect = &found.json()["effects"][0];
+    let expected = effect["parameters"]["coefficient_nm_s_rad"]["value"].clone();
+    let expected = expected.as_f64().unwrap();
+    let line = "add model.toml --from d.json --fit a.csv --holdout b.csv";
+    let ran = bench.run(&format!("{line} -o new.toml --json"));
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(ran.json()["effects"][0], "viscous@1");
+    assert!(
+        ran.stderr.contains("viscous@1: from the values of d.json"),
+        "{ran:?}"
+    );
+    let value = ran.json()["values"][0]["value"].as_f64().unwrap();
+    assert!((value / expected - 1.0).abs() < 1e-3, "{value} {expected}");
+    // An effect that it does not hold, files that are none, and neither effect nor file.
+    let other = line.replace("model.toml", "model.toml coulomb");
+    let other = bench.run(&format!("{other} -o other.toml"));
+    assert!(
+        other.stderr.contains("d.json gives no values of coulomb@1"),
+        "{other:?}"
+    );
+    bench.put("no.json", "{}");
+    let line = line.replace("d.json", "no.json");
+    let refused = bench.run(&format!("{line} -o no.toml"));
+    assert_eq!(refused.code, Some(3), "{refused:?}");
+    assert!(refused.stderr.contains("no diagnosis"), "{refused:?}");
+    let usage = bench.run("add model.toml --fit a.csv -o no.toml");
+    assert_eq!(usage.code, Some(2), "{usage:?}");
+}

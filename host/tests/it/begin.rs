@@ -16,6 +16,21 @@ fn a_model_begun_from_a_log_is_checked_compared_and_diagnosed() {
     assert_eq!(begun.code, Some(0), "{begun:?}");
     let guesses = begun.json()["guesses"].as_array().unwrap().clone();
     assert!(guesses.iter().any(|guess| guess["what"] == "angle zero"));
+    // What is known, estimated and guessed is told apart.
+    let values = begun.json()["values"].as_array().unwrap().clone();
+    let at = |path: &str| {
+        let mut own = values.iter().filter(|value| value["path"] == path);
+        own.next()
+            .unwrap_or_else(|| panic!("{path}: {values:?}"))
+            .clone()
+    };
+    assert_eq!(at("link1.mass_kg")["origin"], "given");
+    assert_eq!(at("link1.inertia_kg_m2")["origin"], "guess");
+    assert!(at("link1.inertia_kg_m2")["low"].is_null());
+    let friction = at("viscous@1.coefficient_nm_s_rad");
+    assert_eq!(friction["origin"], "estimated");
+    let [low, value, high] = ["low", "value", "high"].map(|key| friction[key].as_f64().unwrap());
+    assert!(low < value && value < high, "{friction}");
     assert!(
         begun
             .stderr

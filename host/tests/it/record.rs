@@ -288,6 +288,10 @@ fn those_that_answer_are_recorded_without_ids() {
     }
     let nobody = bench.run("record nobody.csv --seconds 1 --port sim:ids=30");
     assert_eq!(nobody.code, Some(4), "{nobody:?}");
+    // Servos beyond the ids that are asked are looked for by another command.
+    for words in ["no servo of ids 1-18 answers", "bus scan", "--ids"] {
+        assert!(nobody.stderr.contains(words), "{nobody:?}");
+    }
     let monitor = bench.run("bus monitor --rounds 1 --port sim:ids=2+5 --json");
     assert_eq!(monitor.json()[0]["servos"].as_array().unwrap().len(), 2);
 }

@@ -1,4 +1,7 @@
 use super::*;
+use crate::log::MotionSource;
+use crate::sim::{Memory, Plant, Start, predict};
+use std::path::Path;
 
 fn value(of: &str, value: f64, error: f64) -> OneValue {
     OneValue {
@@ -113,4 +116,109 @@ fn joints_are_compared_by_effect_and_key() {
     let (first, error) = (&groups[0].1[0].fitted, 0.001 / 2.0_f64.sqrt());
     assert!((first.high - first.value - HALF_WIDTH * error).abs() < 1e-12);
     assert!(tested(groups)[0].differ);
+}
+
+const ARM: &str = r#"
+[rig]
+name = "arm"
+angle_zero = "hanging"
+
+[[link]]
+com_m = 0.1
+mass_kg = 0.2
+inertia_kg_m2 = 1e-3
+
+[[joint]]
+drive = "duty"
+stall_torque_nm = 1.5
+no_load_speed_rad_s = 6.0
+
+[[effect]]
+kind = "dead_zone"
+joint = 1
+width = 0.05
+punch = 0.0
+
+[log]
+time = { column = "t", unit = "s" }
+
+[[log.joint]]
+position = { column = "q", unit = "rad", resolution_rad = 0.001 }
+input = { column = "u", unit = "1" }
+"#;
+
+/// A motion under this duty, as the model has it.
+fn driven(model: &Model, duty: impl Fn(f64) -> f64) -> Motion {
+    let time_s: Vec<f64> = (0..300).map(|k| f64::from(k) * 0.01).collect();
+    let mut motion = Motion {
+        name: "a".to_string(),
+        source: MotionSource {
+            path: "a.csv".into(),
+            sha256: "0".into(),
+            lines: (1, 300),
+        },
+        position_rad: vec![vec![0.0; time_s.len()]],
+        velocity_rad_s: vec![None],
+        rate_rad_s: Vec::new(),
+        input: vec![Some(time_s.iter().map(|t| duty(*t)).collect())],
+        time_s,
+        supply_v: None,
+        torque_on: None,
+        payload_kg: 0.0,
+        turned: false,
+    };
+    let start = Start {
+        angle_rad: vec![0.1],
+        speed_rad_s: vec![0.0],
+        ..Start::default()
+    };
+    let mut readings = vec![0.0; motion.len()];
+    let (plant, whole) = (Plant::new(model, &motion), 0..motion.len());
+    let mut memory = Memory::default();
+    predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
+    let rounded = readings.iter().map(|rad| (rad / 0.001).round() * 0.001);
+    motion.position_rad[0] = rounded.collect();
+    motion
+}
+
+/// Commands that are full or none tell a dead zone's punch, of its width nothing.
+#[test]
+fn what_shows_nothing_beside_others_of_its_effect_is_held_as_by_a_fit() {
+    let model = Model::parse(ARM, Path::new("arm.toml")).unwrap();
+    let mut truth = model.clone();
+    truth.effects[0].values = vec![0.08, 0.03];
+    let bang = |t: f64| [0.0, 0.3, 0.0, -0.3][(2.0 * t) as usize % 4];
+    let session = |name: &str, motion| DriftSession {
+        name: name.to_string(),
+        motions: vec![motion],
+    };
+    let sessions = [
+        session("bang", driven(&truth, bang)),
+        session("bang again", driven(&truth, |t| -bang(t))),
+    ];
+    let free: Vec<ParameterPath> = ["dead_zone@1.width", "dead_zone@1.punch"]
+        .map(|path| path.parse().unwrap())
+        .to_vec();
+    let found = drift(&model, &free, &sessions, None);
+    assert!(found.refused.is_empty(), "{:?}", found.refused);
+    let held: Vec<&str> = found.held.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(held, ["bang", "bang again"]);
+    assert!(
+        found.held[0]
+            .1
+            .contains("`dead_zone@1.width` changes nothing"),
+        "{found:?}"
+    );
+    // Held in every session, a value is none.
+    let [punch] = &found.sessions[..] else {
+        panic!("{found:?}");
+    };
+    assert_eq!(
+        (punch.path.as_str(), punch.values.len()),
+        ("dead_zone@1.punch", 2)
+    );
+    assert!(
+        (punch.mean - 0.03).abs() < 2e-3 && !punch.differ,
+        "{punch:?}"
+    );
 }

@@ -75,8 +75,10 @@ pub(super) fn free_of(model: &Model, draft: &Draft) -> Vec<ParameterPath> {
     let joint = |index: usize, field: JointField| ParameterPath::Joint { index, field };
     let link = |index: usize, field: LinkField| ParameterPath::Link { index, field };
     let in_newton_metres = (0..links).any(|index| drive(index) == "torque");
-    let mass_is_open =
-        |index: usize| !draft.is_known("mass") && (index + 1 < links || in_newton_metres);
+    // Where the log itself says what its links are, no fit changes them.
+    let known = draft.columns.knows_links;
+    let mass_is_known = known || draft.is_known("mass");
+    let mass_is_open = |index: usize| !mass_is_known && (index + 1 < links || in_newton_metres);
     let mut free = Vec::new();
     for index in 0..links {
         match drive(index) {
@@ -84,7 +86,7 @@ pub(super) fn free_of(model: &Model, draft: &Draft) -> Vec<ParameterPath> {
             "position" => free.push(joint(index, JointField::GainPerRad)),
             "speed" => free.push(joint(index, JointField::GainSPerRad)),
             _ if mass_is_open(index) => free.push(link(index, LinkField::Mass)),
-            _ if links == 1 => free.push(link(index, LinkField::Com)),
+            _ if links == 1 && !known => free.push(link(index, LinkField::Com)),
             _ => {}
         }
         if model.joints[index].drive.motor().is_some() {
@@ -101,7 +103,7 @@ pub(super) fn free_of(model: &Model, draft: &Draft) -> Vec<ParameterPath> {
     );
     free.extend(friction_of(model, "viscous"));
     for index in 0..links {
-        if model.joints[index].drive.is_driven() || links > 1 {
+        if !known && (model.joints[index].drive.is_driven() || links > 1) {
             free.push(link(index, LinkField::Inertia));
         }
         let mass = link(index, LinkField::Mass);

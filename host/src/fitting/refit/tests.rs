@@ -42,7 +42,7 @@ fn candidate(id: &str) -> Candidate {
 /// The pendulum let go at `angle`, as `model` swings.
 fn swing(model: &Model, angle: f64) -> Motion {
     let time_s: Vec<f64> = (0..300).map(|k| f64::from(k) * 0.01).collect();
-    let mut motion = Motion {
+    let motion = Motion {
         name: format!("from {angle}"),
         source: MotionSource {
             path: "swing.csv".into(),
@@ -59,6 +59,11 @@ fn swing(model: &Model, angle: f64) -> Motion {
         payload_kg: 0.0,
         turned: false,
     };
+    read_by(model, motion, angle)
+}
+
+/// The motion with the readings of a model let go at `angle`.
+fn read_by(model: &Model, mut motion: Motion, angle: f64) -> Motion {
     let start = Start {
         angle_rad: vec![angle],
         speed_rad_s: vec![0.0],

@@ -272,8 +272,10 @@ impl JointCheck {
         };
         let unit = self.signal.unit();
         let steps = format!("{name} moves in steps of {found:.3e} {unit}");
-        let remedy =
-            format!("set the resolution of {name} to {found:.3e} {unit} if that is the sensor's");
+        let key = format!("resolution_{}", unit.replace('/', "_"));
+        let remedy = format!(
+            "write {key} = {found:.3e} beside {name:?} in the model's [log] if that is the sensor's"
+        );
         let place = place.clone();
         match self.declared_rad {
             None => findings.note(

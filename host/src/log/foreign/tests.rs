@@ -19,7 +19,7 @@ fn said(name: &str, bytes: &[u8]) -> [String; 2] {
 #[test]
 fn a_foreign_file_is_named_with_its_way_by_every_reader() {
     let npz = [&b"PK\x03\x04"[..], &[0; 22], &[5, 0, 0, 0], b"q.npy"].concat();
-    let cases: [(&str, &[u8], &str, &str); 14] = [
+    let cases: [(&str, &[u8], &str, &str); 18] = [
         (
             "a.csv.gz",
             b"\x1f\x8b\x08",
@@ -85,6 +85,22 @@ fn a_foreign_file_is_named_with_its_way_by_every_reader() {
             "Git LFS",
             "git lfs",
         ),
+        // Records of no bench that is known.
+        (
+            "a.jsonl",
+            b"{\"t\": 0, \"q\": 1}\n",
+            "this is JSON",
+            "pandas.read_json(\"a.jsonl\")",
+        ),
+        (
+            "a.json",
+            b"[{\"t\": 0}]",
+            "no list 'entries'",
+            "pandas.read_json",
+        ),
+        // What no mark tells.
+        ("a.blf", b"LOGG\x90\0\0\0", "this is no text", "as CSV"),
+        ("a.bin", b"\xa3\x95\x80\x01\n", "this is no text", "as CSV"),
     ];
     for (name, bytes, what, way) in cases {
         for said in said(name, bytes) {

@@ -1,7 +1,7 @@
 //! Which column of a log is what, guessed from names and values.
 
 use super::Guess;
-use super::coding::{self, sign_bit};
+use super::coding::coding;
 use super::counts::{counts_beside, counts_of};
 use super::dataset::{self, give_lerobot_roles, is_lerobot};
 use super::inputs::give_inputs;
@@ -218,8 +218,16 @@ impl GuessReader<'_> {
             true => dataset::LEROBOT_UNIT,
             false => "the range of its values",
         };
-        let position = self.of_joint(name, Role::Position).map(|index| {
-            let guessed = angle_unit(&self.log.columns[index]);
+        let position = self
+            .of_joint(name, Role::Position)
+            .filter(|index| self.is_plain(*index, &of("angle"), &[], None, said));
+        let position = position.map(|index| {
+            let (guessed, why) = match angle_unit(&self.log.columns[index]) {
+                ("rad", _) if self.some_angle_is_deg() => {
+                    (("deg", None), "the unit of the other angles")
+                }
+                own => (own, why),
+            };
             self.with_unit(index, &of("angle"), guessed, why, said)
         });
         let angle = position.as_ref().map(|column| column.si(self.log));
@@ -240,6 +248,17 @@ impl GuessReader<'_> {
         })
     }
 
+    /// Whether an angle whose name says no unit goes farther than one in rad. One program writes all
+    /// its angles in one unit.
+    fn some_angle_is_deg(&self) -> bool {
+        let is_open = |index: &usize| {
+            let name = &self.names[*index];
+            name.role == Some(Role::Position) && name.unit.is_none()
+        };
+        let mut open = (0..self.names.len()).filter(is_open);
+        open.any(|index| angle_unit(&self.log.columns[index]).0 == "deg")
+    }
+
     /// Whether a column holds plain numbers; says how else they are coded.
     fn is_plain(
         &self,
@@ -249,13 +268,13 @@ impl GuessReader<'_> {
         angle_rad: Option<&[f64]>,
         said: &mut Vec<Guess>,
     ) -> bool {
-        let bit = sign_bit(&self.log.columns[index], time_s, angle_rad);
-        if let Some(bit) = bit {
+        let coding = coding(&self.log.columns[index], time_s, angle_rad);
+        if let Some(coding) = coding {
             let name = shortened(&self.log.names[index]);
-            let guess = format!("column {name:?} not taken: {}", coding::words(bit));
-            said.push(Guess::new(what, guess, coding::remedy(bit)));
+            let guess = format!("column {name:?} not taken: {}", coding.words());
+            said.push(Guess::new(what, guess, coding.remedy()));
         }
-        bit.is_none()
+        coding.is_none()
     }
 
     fn velocity(

@@ -11,6 +11,7 @@ mod evidence;
 mod inputs;
 mod log_guess;
 mod name;
+mod origin;
 mod segment;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ mod write;
 
 pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
 pub(crate) use name::{Role, name_guess};
+pub use origin::{DraftValue, Estimate, Origin};
 
 use crate::error::{Error, Result};
 use crate::log::RawLog;
@@ -79,6 +81,8 @@ pub struct Draft {
     pub friction: Vec<EffectInstance>,
     /// Addresses of the values that a log determines, once that is known.
     pub free: Option<Vec<String>>,
+    /// Values that a fit to the log gave.
+    pub estimates: Vec<Estimate>,
 }
 
 impl Draft {
@@ -120,6 +124,7 @@ impl Draft {
             split_at_gap_s,
             friction: Vec::new(),
             free: None,
+            estimates: Vec::new(),
         })
     }
 

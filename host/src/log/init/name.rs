@@ -2,8 +2,8 @@
 
 use super::counts::counts;
 use super::words::{
-    AXES, DERIVED, DUTY, EFFORT, GOAL, MEASURED, ON, OTHER, PLAIN, POSITION, SEGMENT, SUPPLY, TIME,
-    TORQUE, UNIT_WORDS, VELOCITY,
+    AXES, DERIVED, DUTY, EFFORT, GOAL, MEASURED, ON, OTHER, PER_TURN, PLAIN, POSITION, SEGMENT,
+    SUPPLY, TIME, TORQUE, UNIT_WORDS, VELOCITY,
 };
 use crate::model::{Dimension, Unit};
 
@@ -80,7 +80,8 @@ pub fn name_guess(name: &str) -> NameGuess {
     };
     let (unit, unit_words) = unit(&words, bracketed);
     let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
-    let role = role(&words, unit.map(|(unit, _)| unit));
+    let is_time = is_time(&words) || is_time(&self::words(field_of(name)));
+    let role = role(&words, is_time, unit.map(|(unit, _)| unit));
     let unit = unit.or_else(|| Some((joint_state_unit(name, role?)?, None)));
     let sets = [
         TIME, SEGMENT, SUPPLY, ON, GOAL, TORQUE, EFFORT, DUTY, VELOCITY, POSITION, MEASURED,
@@ -110,9 +111,14 @@ fn is_number_of_joint(bare: &str, text: &str) -> bool {
     is_number && !(text == "1" && is_duty())
 }
 
-/// Whether a name is that of a topic of ROS joint states, as PlotJuggler writes it.
+/// Whether a name is that of a topic of ROS joint states, or of the state of a controller of joints,
+/// as PlotJuggler writes it, or `rostopic echo -p`.
 pub fn is_joint_state(name: &str) -> bool {
-    name.to_lowercase().contains("joint_states/")
+    let name = name.to_lowercase();
+    let printed = ["field.position", "field.velocity", "field.effort"];
+    name.contains("joint_states/")
+        || name.contains("trajectory_controller/")
+        || printed.iter().any(|begin| name.starts_with(begin))
 }
 
 /// The unit that joint states have by definition.
@@ -138,7 +144,17 @@ pub fn says_current(name: &str) -> bool {
     words.iter().any(|word| word == "current")
 }
 
-fn role(words: &[String], unit: Option<&'static str>) -> Option<Role> {
+/// The last part of a name: `time` of MATLAB's `log.time`.
+fn field_of(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+fn is_time(words: &[String]) -> bool {
+    let first = words.first();
+    first.is_some_and(|word| TIME.contains(&word.as_str()))
+}
+
+fn role(words: &[String], is_time: bool, unit: Option<&'static str>) -> Option<Role> {
     let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
     let is = |unit: Option<&str>, names: &[&str]| unit.is_some_and(|unit| names.contains(&unit));
     let speed = has(VELOCITY) || is(unit, &["rad/s", "deg/s", "rpm"]) || has(&["dot"]);
@@ -146,21 +162,21 @@ fn role(words: &[String], unit: Option<&'static str>) -> Option<Role> {
     if has(ON) {
         return Some(Role::TorqueOn);
     }
-    if words
-        .first()
-        .is_some_and(|word| TIME.contains(&word.as_str()))
-    {
+    if is_time {
         return Some(Role::Time);
     }
     let other = has(OTHER);
+    let moves = speed || has(POSITION);
+    let goal = has(GOAL) || (has(&["input"]) && moves);
     match () {
         () if has(SEGMENT) => Some(Role::Segment),
         () if has(&["payload"]) => Some(Role::Payload),
         () if other || (has(AXES) && !speed) => None,
         () if torque => Some(Role::Torque),
         () if has(DUTY) => Some(Role::Duty),
-        () if has(GOAL) && speed => Some(Role::GoalVelocity),
-        () if has(GOAL) => Some(Role::GoalPosition),
+        // ODrive's `input_pos` is what the drive is given.
+        () if goal && speed => Some(Role::GoalVelocity),
+        () if goal => Some(Role::GoalPosition),
         () if speed => Some(Role::Velocity),
         () if has(POSITION) || is(unit, &["rad", "deg", "turn", "ticks"]) => Some(Role::Position),
         () if has(SUPPLY) => Some(Role::Supply),
@@ -188,6 +204,11 @@ fn unit(words: &[String], bracketed: Option<&str>) -> (Option<(&'static str, Opt
         let known = known.filter(|name| !["A", "mA"].contains(name));
         let known = known.or_else(|| unit_word(&self::words(text).join("_")));
         return (known.map(|unit| (unit, None)), 0);
+    }
+    if let [_, .., word] = words
+        && let Some((_, per_turn)) = PER_TURN.iter().find(|(known, _)| known == word)
+    {
+        return (Some(("ticks", Some(*per_turn))), 1);
     }
     if let [.., word, number] = words {
         let turn = number.parse::<f64>().ok().filter(|turn| *turn >= 100.0);

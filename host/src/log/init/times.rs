@@ -1,6 +1,7 @@
 //! Which column of a log is its time, and why a log has none, or no joint.
 
 use super::Guess;
+use super::coding::coding;
 use super::columns::GuessReader;
 use super::log_guess::ColumnGuess;
 use super::name::{Role, name_guess};
@@ -63,7 +64,12 @@ impl GuessReader<'_> {
         let moving = [Role::Position, Role::Velocity].map(Some);
         let mut named = (0..self.names.len()).filter(|i| moving.contains(&self.names[*i].role));
         if let Some(index) = named.next() {
-            return self.no_number(file, index);
+            let Some(coding) = coding(&self.log.columns[index], &[], None) else {
+                return self.no_number(file, index);
+            };
+            let name = shortened(&self.log.names[index]);
+            let what = format!("column '{name}': {}", coding.words());
+            return Error::data(Place::file(file), what, coding.remedy());
         }
         let is_moving = |(name, _): &&(String, String)| moving.contains(&name_guess(name).role);
         if let Some((name, holds)) = self.log.left_out.iter().find(is_moving) {

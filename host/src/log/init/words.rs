@@ -14,6 +14,8 @@ pub(super) const UNIT_WORDS: &[(&str, &str)] = &[
     ("rpm", "rpm"),
     ("mn_m", "mN m"),
     ("mnm", "mN m"),
+    ("n_mm", "mN m"),
+    ("nmm", "mN m"),
     ("n_m", "N m"),
     ("nm", "N m"),
     ("kgf_cm", "kgf cm"),
@@ -31,6 +33,8 @@ pub(super) const UNIT_WORDS: &[(&str, &str)] = &[
     ("rev", "turn"),
     ("tick", "ticks"),
     ("ticks", "ticks"),
+    ("step", "ticks"),
+    ("steps", "ticks"),
     ("count", "ticks"),
     ("counts", "ticks"),
     ("sec", "s"),
@@ -51,6 +55,15 @@ pub(super) const UNIT_WORDS: &[(&str, &str)] = &[
     ("pct", "%"),
     ("kg", "kg"),
     ("g", "g"),
+];
+
+/// Units of angles that are fractions of one that has a name, and how many make a turn.
+pub(super) const PER_TURN: &[(&str, f64)] = &[
+    ("cdeg", 36_000.0),
+    ("centideg", 36_000.0),
+    ("mdeg", 360_000.0),
+    ("millideg", 360_000.0),
+    ("mrad", 1000.0 * std::f64::consts::TAU),
 ];
 
 pub(super) const TIME: &[&str] = &[

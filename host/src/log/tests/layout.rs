@@ -118,6 +118,14 @@ fn names_in_comments_and_blanks_between_fields_are_read() {
         plain.replace('\n', ",\n"),
         plain.replace('\n', ",\n").replacen("u,", "u", 1),
         plain.replace(",0.5,", ",5D-1,"),
+        // Bars; blanks between decimal commas; ends of lines as old Macs and some meters write.
+        plain.replace(',', "|"),
+        plain.replace(',', " | ").replace('.', ","),
+        plain.replace(',', " ").replace('.', ","),
+        plain.replace('\n', "\r"),
+        // Excel says its separator first.
+        format!("sep=,\n{plain}"),
+        format!("sep=;\r\n{}", plain.replace(',', ";")),
     ];
     for text in dialects {
         let motions = read_text(&text, &columns()).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -131,7 +139,11 @@ fn names_in_comments_and_blanks_between_fields_are_read() {
 
 #[test]
 fn words_for_nothing_are_gaps() {
-    for word in ["NA", "NULL", "None", "null", "n/a", "NaN"] {
+    let words = [
+        "NA", "NULL", "None", "null", "n/a", "NaN", "<NA>", "-", "--", "1.#QNAN", "-1.#IND",
+        "#DIV/0!",
+    ];
+    for word in words {
         let text = rows("t_s,q,u", ',').replacen("0.06,0.5", &format!("0.06,{word}"), 1);
         let motion = &read_text(&text, &columns()).unwrap()[0];
         assert!(motion.position_rad[0][6].is_nan(), "{word}");

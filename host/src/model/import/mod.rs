@@ -9,6 +9,7 @@ mod groups;
 mod inertia;
 mod mjcf;
 mod planar;
+mod prefixes;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -20,6 +21,7 @@ pub use tree::Remark;
 
 use crate::error::{Error, Result};
 use planar::planar_chain;
+use prefixes::declared;
 use std::path::Path;
 use tree::TreeDrive;
 use xml::XmlFile;
@@ -61,7 +63,8 @@ pub struct Imported {
 /// Broken XML and what the formats' readers refuse, with line and column; joints that make no
 /// planar chain.
 pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
-    let file = XmlFile::parse(path, text)?;
+    let text = declared(text);
+    let file = XmlFile::parse(path, &text)?;
     let root = file.root();
     let (format, mut tree) = match root.tag() {
         "robot" => ("urdf", urdf::tree(root)?),

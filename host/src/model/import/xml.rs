@@ -26,21 +26,26 @@ pub(super) struct Element<'a> {
     pub node: Node<'a, 'a>,
 }
 
+/// Parses; entities and document types are refused, so no text grows while it is read.
+pub(super) fn parsed(text: &str) -> std::result::Result<Document<'_>, roxmltree::Error> {
+    let options = ParsingOptions {
+        allow_dtd: false,
+        nodes_limit: MOST_NODES,
+    };
+    Document::parse_with_options(text, options)
+}
+
 impl<'a> XmlFile<'a> {
-    /// Parses; entities and document types are refused, so no text grows while it is read.
+    /// Parses as [`parsed`].
     pub fn parse(path: &'a Path, text: &'a str) -> Result<Self> {
-        let options = ParsingOptions {
-            allow_dtd: false,
-            nodes_limit: MOST_NODES,
-        };
-        let document = Document::parse_with_options(text, options).map_err(|error| {
+        let document = parsed(text).map_err(|error| {
             let at = error.pos();
             let place = Place::at(path, at.row as usize, at.col as usize);
-            Error::data(
-                place,
-                format!("no XML: {error}"),
-                "write the robot's file as XML",
-            )
+            let remedy = match &error {
+                roxmltree::Error::DtdDetected => "delete the <!DOCTYPE ..> and its entities",
+                _ => "write the robot's file as XML",
+            };
+            Error::data(place, format!("no XML: {error}"), remedy)
         })?;
         let lines = text.match_indices('\n').map(|(at, _)| at + 1).collect();
         Ok(XmlFile {

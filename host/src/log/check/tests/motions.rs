@@ -85,6 +85,10 @@ fn wraps_stops_and_steps_are_found() {
         Severity::Note,
         "steps of 1.000e-2 rad",
     );
+    let step = found(&text(&coarse), &servo());
+    let step = step.iter().find(|finding| finding.kind == "step").unwrap();
+    let line = "write resolution_rad = 1.000e-2 beside \"q\"";
+    assert!(step.remedy.starts_with(line), "{step:?}");
     let mut declared = servo();
     first(&mut declared.log.joints[0].position).resolution = Some(0.0015);
     finds(

@@ -232,3 +232,39 @@ fn a_bench_s_own_figures_make_its_model() {
     };
     assert_eq!(figures, Some(expected));
 }
+
+#[test]
+fn angles_of_one_log_are_in_one_unit() {
+    let wide: TestCurve = |t| 60.0 * swing(t);
+    let (draft, _) = draft(&[("t", |t| t), ("pan.pos", wide), ("lift.pos", swing)]);
+    let units = draft.columns.joints.iter();
+    let units: Vec<&str> = units.map(|j| j.position.as_ref().unwrap().unit).collect();
+    assert_eq!(units, ["deg", "deg"]);
+    let said = said(&draft, "angle of joint lift");
+    assert!(said[0].contains("the unit of the other angles"), "{said:?}");
+}
+
+#[test]
+fn fractions_of_units_are_read_by_their_names() {
+    let centidegrees: TestCurve = |t| 100.0 * swing(t).to_degrees();
+    let (_, model) = draft(&[("t", |t| t), ("angle_cdeg", centidegrees)]);
+    let position = model.log.joints[0].position.as_ref().unwrap();
+    assert!((position.columns()[0].to_si(18000.0) - std::f64::consts::PI).abs() < 1e-9);
+}
+
+#[test]
+fn an_angle_whose_register_has_a_sign_bit_is_refused_with_what_to_write() {
+    let coded: TestCurve = |t| {
+        let value = (500.0 * swing(t)).trunc();
+        if value < 0.0 { 32768.0 - value } else { value }
+    };
+    let error = Draft::of(&log(&[("t", |t| t), ("pos", coded)]), "a.csv", None).unwrap_err();
+    assert!(
+        error.to_string().contains("column 'pos': sign in bit 15"),
+        "{error}"
+    );
+    assert!(
+        error.remedy().unwrap().contains("write 32768 - value"),
+        "{error}"
+    );
+}

@@ -318,6 +318,16 @@ fn only_the_namespace_of_xacro_is_xacro() {
     let (found, _) = imported(&vendors, &["lift", "elbow"]);
     assert_eq!(told(&found, "link").unwrap().0, Some(8));
     assert_eq!(told(&found, "gear_ratio").unwrap().0, Some(6));
+    // Old files use prefixes that nothing declares.
+    let undeclared = vendors.replace(" xmlns:drake=\"https://drake.mit.edu\"", "");
+    let (found, _) = imported(&undeclared, &["lift", "elbow"]);
+    assert_eq!(told(&found, "link").unwrap().0, Some(8));
+    assert_eq!(told(&found, "gear_ratio").unwrap().0, Some(6));
+    let undeclared = ARM.replace("<limit effort=\"1e16\"/>", "<xacro:limits/>");
+    assert!(refused(&undeclared, &["lift", "elbow"]).contains("<xacro:limits>"));
+    let doctype = ARM.replacen("<robot ", "<!DOCTYPE robot>\n<robot ", 1);
+    let error = import(&doctype, Path::new("r.urdf"), &ImportPlan::default()).unwrap_err();
+    assert!(error.remedy().unwrap().contains("delete the <!DOCTYPE"));
     let xacro = ARM.replace(
         "<robot ",
         "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" ",
