@@ -4,6 +4,7 @@
 use super::data::FitData;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
+use super::jacobian::difference;
 use super::refit::Undetermined;
 use super::residual::residuals;
 use super::solve::fit;
@@ -95,16 +96,19 @@ fn undetermined_by(found: &Fit, data: &FitData) -> Undetermined {
     }
 }
 
-/// The free parameters whose change leaves every prediction as it was.
-fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
+/// The free parameters whose change, by the step of their derivative up or down, leaves every
+/// prediction as it was: of a law that jumps a smaller one moves no sample across.
+pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
     let base = residuals(&found.model, data, &found.nodes);
     let changes_nothing = |path: &&ParameterPath| {
         let value = path.get(&found.model).unwrap_or(0.0);
-        let (_, high) = path.bounds(&found.model);
-        let size = 1e-3 * value.abs().max(1e-3);
-        let size = if value + size > high { -size } else { size };
-        let mut moved = found.model.clone();
-        path.set(&mut moved, value + size) && residuals(&moved, data, &found.nodes) == base
+        let (low, high) = path.bounds(&found.model);
+        let step = difference(path, value);
+        [value - step, value + step].iter().all(|other| {
+            let mut moved = found.model.clone();
+            let is_free = path.set(&mut moved, other.clamp(low, high));
+            is_free && residuals(&moved, data, &found.nodes) == base
+        })
     };
     found.free.iter().filter(changes_nothing).cloned().collect()
 }

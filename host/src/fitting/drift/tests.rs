@@ -222,3 +222,17 @@ fn what_shows_nothing_beside_others_of_its_effect_is_held_as_by_a_fit() {
         "{punch:?}"
     );
 }
+
+/// A step of a thousandth moves no sample across the width; the derivative's does.
+#[test]
+fn a_width_that_a_ramp_of_duty_shows_is_not_blind() {
+    let mut truth = Model::parse(ARM, Path::new("arm.toml")).unwrap();
+    truth.effects[0].values = vec![0.0803, 0.03];
+    let ramp = driven(&truth, |t| 0.2 * t - 0.3);
+    let data = FitData::new(&truth, vec![ramp], Horizon::Whole);
+    let free: Vec<ParameterPath> = ["dead_zone@1.width", "dead_zone@1.punch"]
+        .map(|path| path.parse().unwrap())
+        .to_vec();
+    let found = fit(&truth, &free, &data, None, FitOptions::iterations(0));
+    assert_eq!(blind(&found, &data), []);
+}
