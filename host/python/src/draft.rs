@@ -17,6 +17,7 @@ use std::path::PathBuf;
 pub struct Draft {
     model: Model,
     guesses: Value,
+    values: Value,
 }
 
 /// Starts a model from a log: columns and units are guessed from the header's names and the
@@ -94,6 +95,7 @@ pub fn init(
     Ok(Draft {
         model: Model::of(text, PathBuf::from("model.toml")).map_err(exception)?,
         guesses: json!(draft.guesses),
+        values: json!(draft.values().map_err(exception)?),
     })
 }
 
@@ -111,12 +113,19 @@ impl Draft {
         plain(py, &self.guesses)
     }
 
+    /// The model's values: each with `path`, `value`, `low` and `high` of an estimate's 95 %
+    /// interval, and `origin`: `given`, `estimated` or `guess`.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.values)
+    }
+
     /// Everything, with the keys of `handstand init --json`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text = &self.model.text;
         plain(
             py,
-            &json!({ "file": null, "text": text, "guesses": self.guesses }),
+            &json!({ "file": null, "text": text, "guesses": self.guesses, "values": self.values }),
         )
     }
 

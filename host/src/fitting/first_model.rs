@@ -91,7 +91,7 @@ pub fn estimate(
             return Ok(());
         }
     };
-    let rubbing = rubbing(&drafted, &motions);
+    let mut rubbing = rubbing(&drafted, &motions);
     let course = Course::new(stop, heard);
     let Some(best) = best_meaning(&rubbing, draft, &motions, &course) else {
         draft.note("values", "guesses alone", "nothing moves in the log");
@@ -111,7 +111,7 @@ pub fn estimate(
     let few = excerpts(&read_so(&motions, reversed), SAMPLES);
     let data = windows(&best.model, few, WINDOW_S).halted_by(&course.halt);
     let free = free_of(&rubbing, draft);
-    let with_levers = with_levers(&free);
+    let with_levers = with_levers(&free, &mut rubbing);
     // Short windows may lead astray where they show little: a swing of seconds.
     let mut begun = if drafted.driven_joints().is_empty() {
         starts(&rubbing, &with_levers)
@@ -217,8 +217,9 @@ fn best_meaning(
     if few.windows.is_empty() || !moves(&few) {
         return None;
     }
-    let model = &coarsened(model, &few);
-    let free = with_levers(&free_of(model, draft));
+    let mut model = coarsened(model, &few);
+    let free = with_levers(&free_of(&model, draft), &mut model);
+    let model = &model;
     let meanings = meanings(model, draft);
     let count = meanings.len();
     let fitted = |meaning: Meaning| {

@@ -99,12 +99,22 @@ fn requests_that_make_no_sense_end_in_2_and_name_a_remedy() {
 #[test]
 fn windows_of_too_few_samples_are_refused() {
     let bench = Bench::new();
+    let driven =
+        MODEL.replace("passive", "torque") + "input = { column = \"u_nm\", unit = \"N m\" }\n";
+    bench.put("driven.toml", driven);
+    let header = |row: usize| if row == 0 { "u_nm" } else { "0.01" };
+    let swing = bench.get("a.csv");
+    let rows = swing.lines().enumerate();
+    let rows: Vec<String> = rows
+        .map(|(k, row)| format!("{row},{}\n", header(k)))
+        .collect();
+    bench.put("driven_a.csv", rows.concat());
     for line in [
         "compare model.toml a.csv",
         "fit model.toml a.csv --free link1.com_m -o new.toml",
         "add model.toml viscous --fit a.csv -o new.toml",
         "diagnose model.toml a.csv b.csv",
-        "next model.toml a.csv --value link1.com_m",
+        "next driven.toml driven_a.csv --value link1.com_m",
         "drift model.toml a.csv b.csv --free link1.com_m",
         "view model.toml a.csv --model model.toml -o new.html",
     ] {

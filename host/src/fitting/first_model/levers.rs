@@ -5,6 +5,8 @@ use super::settling::Settling;
 use crate::fitting::fit::Fit;
 use crate::model::{Link, LinkField, Model, ParameterPath};
 
+/// A lever is at most so many times its guess, and at least that share.
+const ANY_LEVER: f64 = 10.0;
 /// A lever this near, as a share, to the one of the fastest swing is held there by the inertia.
 const AT_SHORTEST: f64 = 0.1;
 /// The inertia is then taken so many times as large.
@@ -21,14 +23,20 @@ const CARRIED: std::ops::RangeInclusive<f64> = 0.6..=0.8;
 /// Least share of its pull of gravity that a link keeps where the one behind it grows heavier.
 const LEFT: f64 = 0.25;
 
-/// What is fitted, and the levers of links whose inertia is.
-pub(super) fn with_levers(free: &[ParameterPath]) -> Vec<ParameterPath> {
+/// What is fitted, and the levers of links whose inertia is; these keep to the model's bounds, which
+/// are set: a lever below zero is a mass on the other side, another zero of the angles.
+pub(super) fn with_levers(free: &[ParameterPath], model: &mut Model) -> Vec<ParameterPath> {
     let levers = fitted_inertias(free).map(|index| ParameterPath::Link {
         index,
         field: LinkField::Com,
     });
-    let levers = levers.filter(|path| !free.contains(path));
-    free.iter().copied().chain(levers).collect()
+    let levers: Vec<ParameterPath> = levers.filter(|path| !free.contains(path)).collect();
+    for path in &levers {
+        let guess = path.get(model).unwrap_or_default();
+        let bounds = (guess / ANY_LEVER, guess * ANY_LEVER);
+        model.bounds.push((*path, bounds));
+    }
+    [free, &levers].concat()
 }
 
 impl Settling<'_> {
@@ -199,7 +207,15 @@ mod tests {
                  inertia_kg_m2 = {inertia_kg_m2}\n[[joint]]\ndrive = \"passive\"\n"
             )
         });
-        let text = format!("[rig]\nname = \"three\"\n{}", tables.join(""));
+        let logged = [1, 2, 3].map(|joint| {
+            format!("[[log.joint]]\nposition = {{ column = \"q{joint}\", unit = \"rad\" }}\n")
+        });
+        let text = format!(
+            "[rig]\nname = \"three\"\nangle_zero = \"hanging\"\n{}[log]\n\
+             time = {{ column = \"t\", unit = \"s\" }}\n{}",
+            tables.join(""),
+            logged.join("")
+        );
         Model::parse(&text, std::path::Path::new("three.toml")).unwrap()
     }
 
