@@ -24,9 +24,12 @@ const CARRIED: std::ops::RangeInclusive<f64> = 0.6..=0.8;
 const LEFT: f64 = 0.25;
 
 /// What is fitted, and the levers of links whose inertia is; these keep to the model's bounds, which
-/// are set: a lever below zero is a mass on the other side, another zero of the angles.
+/// are set: a lever below zero is a mass on the other side, another zero of the angles. Beside a
+/// motor whose strength is a guess a lever stays at its own: both scale alike.
 pub(super) fn with_levers(free: &[ParameterPath], model: &mut Model) -> Vec<ParameterPath> {
-    let levers = fitted_inertias(free).map(|index| ParameterPath::Link {
+    let moved = |index: &usize| model.joints[*index].drive.motor().is_none();
+    let levers = fitted_inertias(free).filter(moved);
+    let levers = levers.map(|index| ParameterPath::Link {
         index,
         field: LinkField::Com,
     });
