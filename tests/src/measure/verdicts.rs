@@ -6,7 +6,8 @@
 
 use super::page::Page;
 use super::program;
-use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
+use comfy_table::Table;
+use handstand::output::table::plain_table;
 use handstand_tests::measured::Measured;
 use handstand_tests::verdicts::robot::{NonIdeality, Robot};
 use handstand_tests::verdicts::{Judged, judge};
@@ -15,7 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// Measure whether verdicts on designs agree with other simulations and with `balance`.
 #[derive(Debug, clap::Args)]
@@ -47,6 +48,20 @@ const STAND: usize = 9;
 /// Starts of `balance` are within this of upright in each joint, deg.
 const START_DEG: f64 = 1.0;
 
+/// Exit codes that answer: it stands; it does not; no plan; the CM-5 does not arm; safety stop.
+const STOOD: i32 = 0;
+const NO: i32 = 1;
+const REFUSED: i32 = 3;
+const UNARMED: i32 = 4;
+const STOPPED: i32 = 5;
+
+const BALANCE_HEADER: [&str; 4] = [
+    "Robot",
+    "`deploy --dry-run`, of 10",
+    "`balance`, of 10",
+    "Same",
+];
+
 /// Whether the targets are met.
 pub fn run(args: &Args) -> bool {
     let mut random = ChaCha8Rng::seed_from_u64(args.seed);
@@ -56,10 +71,22 @@ pub fn run(args: &Args) -> bool {
     let enough = |agreed: usize, of: usize| agreed as f64 >= AGREE * of as f64;
     let mut well = refused.is_empty() && enough(agreed, judged.len());
     let mut measured = Measured::default()
-        .table(gains_table(&judged))
+        .table(table(
+            [
+                "Robot",
+                "Weight of speeds",
+                "`gains`",
+                "stabilised",
+                "Own simulation",
+                "stand",
+                "Same",
+            ],
+            judged.iter().map(gains_line),
+        ))
         .lines(refused)
         .line(format!(
-            "`gains` and a simulation of its own agree on {agreed} of {} robots (at least 28 of 30).",
+            "`gains` and a simulation of its own agree on {agreed} of {} robots (at least 28 of \
+             30).",
             judged.len()
         ));
     let mut figures = json!({ "gains": { "agree": agreed, "robots": judged.len() } });
@@ -67,20 +94,22 @@ pub fn run(args: &Args) -> bool {
         let Some(program) = program::built() else {
             return false;
         };
-        let balanced = balanced(&program, &robots, args.seed);
+        let (balanced, failed) = balanced(&program, &robots, args.seed);
         let agreed = balanced.iter().filter(|one| one.agrees()).count();
-        let singles = balanced_singly(&program, args.seed);
+        let (singles, failed_singly) = balanced_singly(&program, args.seed);
         let held = singles.iter().filter(|one| one.agrees());
         let held = held.count();
-        well &= enough(agreed, balanced.len()) && held == singles.len();
+        let failed = [failed, failed_singly].concat();
+        well &= failed.is_empty() && enough(agreed, balanced.len()) && held == singles.len();
         measured = measured
-            .table(balance_table(&balanced))
+            .lines(failed)
+            .table(table(BALANCE_HEADER, balanced.iter().map(balance_line)))
             .line(format!(
                 "`deploy --dry-run` and `balance` agree on {agreed} of {} robots (at least 28 of \
                  30).",
                 balanced.len()
             ))
-            .table(balance_table(&singles))
+            .table(table(BALANCE_HEADER, singles.iter().map(balance_line)))
             .line(format!(
                 "One non-ideality each: they agree on {held} of {} (all of them); {} stand.",
                 singles.len(),
@@ -102,29 +131,24 @@ fn by_gains(args: &Args, robots: &[Robot]) -> (Vec<Judged>, Vec<String>) {
         }
         said.map_err(|why| format!("Robot {} ({}): {why}.", place + 1, robot.words()))
     });
-    let judged: Vec<Result<Judged, String>> = judged.collect();
-    let (well, refused): (Vec<_>, Vec<_>) = judged.into_iter().partition(Result::is_ok);
-    (
-        well.into_iter().flatten().collect(),
-        refused.into_iter().filter_map(Result::err).collect(),
-    )
+    parted(judged.collect())
 }
 
-fn gains_table(judged: &[Judged]) -> Table {
-    let mut table = Table::new();
-    let header = [
-        "Robot",
-        "Weight of speeds",
-        "`gains`",
-        "of 40",
-        "Own simulation",
-        "stand",
-        "Same",
-    ];
-    table.load_preset(UTF8_HORIZONTAL_ONLY).set_header(header);
-    for one in judged {
-        table.add_row(gains_line(one));
+/// What was found, and why the rest was not.
+fn parted<T>(all: Vec<Result<T, String>>) -> (Vec<T>, Vec<String>) {
+    let (mut found, mut failed) = (Vec::new(), Vec::new());
+    for one in all {
+        match one {
+            Ok(one) => found.push(one),
+            Err(why) => failed.push(why),
+        }
     }
+    (found, failed)
+}
+
+fn table<const N: usize>(header: [&str; N], lines: impl Iterator<Item = [String; N]>) -> Table {
+    let mut table = plain_table(header);
+    table.add_rows(lines);
     table
 }
 
@@ -162,19 +186,19 @@ impl Balanced {
     }
 }
 
-fn balanced(program: &Path, robots: &[Robot], seed: u64) -> Vec<Balanced> {
-    let each = robots.par_iter().enumerate();
-    each.map(|(place, robot)| {
+fn balanced(program: &Path, robots: &[Robot], seed: u64) -> (Vec<Balanced>, Vec<String>) {
+    let each = robots.par_iter().enumerate().map(|(place, robot)| {
         let balanced = balance(program, robot, seed + 2000 + place as u64);
-        let line = balance_line(&balanced);
-        eprintln!("{}: {}", place + 1, line.join(" | "));
-        balanced
-    })
-    .collect()
+        if let Ok(balanced) = &balanced {
+            eprintln!("{}: {}", place + 1, balance_line(balanced).join(" | "));
+        }
+        balanced.map_err(|why| format!("Robot {} ({}): {why}.", place + 1, robot.words()))
+    });
+    parted(each.collect())
 }
 
 /// The paper's robot with each of the non-idealities that a plan can hold, alone.
-fn balanced_singly(program: &Path, seed: u64) -> Vec<Balanced> {
+fn balanced_singly(program: &Path, seed: u64) -> (Vec<Balanced>, Vec<String>) {
     let singles = [
         NonIdeality::Delay(0.018),
         NonIdeality::DeadZone(1, 0.2, 0.0),
@@ -190,58 +214,55 @@ fn balanced_singly(program: &Path, seed: u64) -> Vec<Balanced> {
 }
 
 /// Deploys to a robot and balances it, by the program's own commands without an option but the
-/// model.
-fn balance(program: &Path, robot: &Robot, seed: u64) -> Balanced {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let starts: Vec<String> = (0..ATTEMPTS)
-        .map(|_| {
-            let lean: [f64; 3] =
-                std::array::from_fn(|_| random.random_range(-START_DEG..=START_DEG));
-            let [first, second, third] = lean;
-            format!("{first:.3}/{second:.3}/{third:.3}")
-        })
-        .collect();
-    let folder = tempfile::tempdir();
-    let Ok(folder) = folder else {
-        return Balanced {
-            robot: "no temporary folder".into(),
-            verdict: None,
-            stood: 0,
-        };
-    };
+/// model. An end that is no answer is an error: two commands that fail alike agree on nothing.
+fn balance(program: &Path, robot: &Robot, seed: u64) -> Result<Balanced, String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let written = std::fs::write(folder.path().join("robot.toml"), robot.toml());
+    written.map_err(|error| error.to_string())?;
     let run = |words: &str| {
         let mut command = Command::new(program);
         command.current_dir(folder.path()).args(words.split(' '));
-        command.output().ok().filter(|_| written.is_ok())
+        command.output().map_err(|error| error.to_string())
     };
-    let said = run("deploy robot.toml --dry-run --states 1 --json -q");
-    let said = said.and_then(|output| serde_json::from_slice::<Value>(&output.stdout).ok());
-    let stood = starts.iter().filter(|lean| {
+    let said = run("deploy robot.toml --dry-run --states 1 --json -q")?;
+    let verdict = match said.status.code() {
+        Some(STOOD | NO) => Some(verdict(&said.stdout)?),
+        Some(REFUSED) => None,
+        _ => return Err(ended("deploy", &said)),
+    };
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut stood = 0;
+    for _ in 0..ATTEMPTS {
+        let [first, second, third]: [f64; 3] =
+            std::array::from_fn(|_| random.random_range(-START_DEG..=START_DEG));
+        let lean = format!("{first:.3}/{second:.3}/{third:.3}");
         let port = format!("sim-cm5:robot=robot.toml,start=held,lean={lean}");
         let words = format!("balance robot.toml --port {port} --yes --seconds 10 --countdown 0 -q");
-        run(&words).is_some_and(|output| output.status.success())
-    });
-    Balanced {
-        robot: robot.words(),
-        verdict: said.and_then(|said| said["verdict"]["stood"].as_u64()),
-        stood: stood.count(),
+        let balanced = run(&words)?;
+        match balanced.status.code() {
+            Some(STOOD) => stood += 1,
+            Some(UNARMED | STOPPED) => {}
+            Some(REFUSED) if verdict.is_none() => {}
+            _ => return Err(ended("balance", &balanced)),
+        }
     }
+    Ok(Balanced {
+        robot: robot.words(),
+        verdict,
+        stood,
+    })
 }
 
-fn balance_table(balanced: &[Balanced]) -> Table {
-    let mut table = Table::new();
-    let header = [
-        "Robot",
-        "`deploy --dry-run`, of 10",
-        "`balance`, of 10",
-        "Same",
-    ];
-    table.load_preset(UTF8_HORIZONTAL_ONLY).set_header(header);
-    for one in balanced {
-        table.add_row(balance_line(one));
-    }
-    table
+/// How many of the attempts stood that `deploy --json` tells of.
+fn verdict(json: &[u8]) -> Result<u64, String> {
+    let said: Value = serde_json::from_slice(json).map_err(|error| error.to_string())?;
+    let stood = said["verdict"]["stood"].as_u64();
+    stood.ok_or_else(|| "`deploy` states no verdict".to_string())
+}
+
+fn ended(command: &str, output: &Output) -> String {
+    let said = String::from_utf8_lossy(&output.stderr);
+    format!("`{command}` ended with {}: {}", output.status, said.trim())
 }
 
 fn balance_line(one: &Balanced) -> [String; 4] {
