@@ -128,7 +128,8 @@ fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobus
         (title, multi.gain(&nominal, nominal.delay_s)?),
     ];
     if let Some(file) = &args.plan {
-        gains.insert(0, (file.display().to_string(), plan::gain(file, &sampled)?));
+        let k = plan::gain(file, model, &sampled, args.ts)?;
+        gains.insert(0, (file.display().to_string(), k));
     }
     bar.inc(1);
     let judge = |(gain, k): (String, DMatrix<f64>)| {

@@ -84,10 +84,15 @@ fn robust_has_the_model_s_delay_and_takes_gains_of_a_file() {
     assert_eq!(aware[0]["unstable"], aware[1]["unstable"]);
     assert!(aware[0]["unstable"].as_f64().unwrap() < 1.0, "{aware}");
     assert!(aware[3]["k"][0].as_array().unwrap().len() > 6, "{aware}");
-    bench.put("arm.json", "{\n\"k\": [[1, 2]]}");
-    let other = judged("arm.json");
-    assert_eq!(other.code, Some(3), "{other:?}");
-    assert!(other.stderr.contains("1 rows of 2"), "{other:?}");
+    let arm = r#"{"u0": [0], "x0": [0, 0], "k": [[1, 2]], "sampled": null}"#;
+    bench.put("arm.json", arm);
+    let slower = bench.run("gains late.toml --ts 0.02 --json").stdout;
+    bench.put("slower.json", slower);
+    for (plan, said) in [("arm.json", "`u0` has 1 values"), ("slower.json", "0.02 s")] {
+        let other = judged(plan);
+        assert_eq!(other.code, Some(3), "{other:?}");
+        assert!(other.stderr.contains(said), "{other:?}");
+    }
 }
 
 #[test]

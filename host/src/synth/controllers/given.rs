@@ -71,6 +71,13 @@ impl GivenGains {
     }
 }
 
+impl GivenGains {
+    /// N m per state, a row per drive: angles, speeds, past torques.
+    pub fn k(&self) -> &[Vec<f64>] {
+        &self.k
+    }
+}
+
 impl ControllerDesign for GivenGains {
     fn info(&self) -> &ControllerInfo {
         &INFO
