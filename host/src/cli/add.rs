@@ -12,8 +12,8 @@
 //! $ handstand add arm.toml delay --fit a.csv b.csv --holdout c.csv -o better.toml
 //! ```
 //!
-//! `--from` takes the diagnosis that `diagnose --json` printed: its effects are added unless others are
-//! named, and the fit starts from its values, so that it leaves no more of the motions fitted.
+//! `--from` takes the diagnosis that `diagnose --json` printed: its effects are added unless others
+//! are named, and the fit starts from its values, so that it leaves no more of the motions fitted.
 //!
 //! ```console
 //! $ handstand diagnose arm.toml a.csv b.csv --holdout c.csv --json > diagnosis.json
@@ -91,12 +91,11 @@ impl AddArgs {
         let start = diagnosis.values(&candidates, model)?;
         let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
         let (names, file) = (names.join(", "), file.display());
-        match start.is_empty() {
-            true => talk.say(&format!(
-                "{file} gives no values of {names}: none is started from"
-            )),
-            false => talk.say(&format!("{names}: from the values of {file}")),
-        }
+        talk.say(&if start.is_empty() {
+            format!("{file} gives no values of {names}: none is started from")
+        } else {
+            format!("{names}: from the values of {file}")
+        });
         for path in diagnosis.wrong_values() {
             talk.say(&format!(
                 "{file}: `{path}` is wrong as well; `handstand fit --free {path}`"

@@ -20,8 +20,8 @@
 //! ```
 //!
 //! Exit code 1 when under some condition no controller stabilises 95 %. `--json` prints a list of
-//! `controller`, `condition`, `robots`, `stabilised`, `held` (runs that stay without any command), `fallen`, `rms_angle_rad`, `limit_cycle_rad`,
-//! `rms_torque_nm`, `region_rad`, `region_open`.
+//! `controller`, `condition`, `robots`, `stabilised`, `held` (runs that stay without any command),
+//! `fallen`, `rms_angle_rad`, `limit_cycle_rad`, `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::gains_choice::GainsChoice;
 use super::{ExitStatus, Talk, input, show};

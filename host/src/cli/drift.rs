@@ -12,8 +12,9 @@
 //!
 //! Exit code 1 when fewer than two logs determine the values. `--json` prints `sessions` and
 //! `joints` (`path`, `unit`, `values`: `of`, `path`, `key`, `unit`, `value`, `low`, `high`,
-//! `on_bound`, `stands_out`; `mean`, `probability`, `differ`), `refused` (name and reason) and `held`
-//! (name, and which value shows nothing there beside others of its effect, so that it is held).
+//! `on_bound`, `stands_out`; `mean`, `probability`, `differ`), `refused` (name and reason) and
+//! `held` (name, and which value shows nothing there beside others of its effect, so that it is
+//! held).
 
 use super::{ExitStatus, Talk, input, show};
 use handstand::Result;

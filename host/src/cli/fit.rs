@@ -2,8 +2,8 @@
 //!
 //! Free are the values the model's `[fit]` names, or those that `--free` names instead. `--bounds`
 //! keeps a value between two others, and writes that into the new file, where later fits and
-//! diagnoses heed it. The new file is the old one with new values, and where they came from; comments
-//! and layout stay.
+//! diagnoses heed it. The new file is the old one with new values, and where they came from;
+//! comments and layout stay.
 //!
 //! ```console
 //! $ handstand fit arm.toml swing.csv --free coulomb@1.torque_nm -o fitted.toml

@@ -12,8 +12,8 @@
 //! ```
 //!
 //! Without `-o` the file's text goes to stdout. `--json` prints `file` (or null), `text` (null
-//! where a file was written), `guesses` (`what`, `guess`, `why`) and `values` (`path`, `value`, `low`
-//! and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`).
+//! where a file was written), `guesses` (`what`, `guess`, `why`) and `values` (`path`, `value`,
+//! `low` and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`).
 
 use super::{ExitStatus, Talk, input};
 use handstand::fitting::{StopSwitch, estimate};

@@ -160,14 +160,14 @@ pub fn chosen(
     let found = ask()?;
     let ids = found.ids();
     say_found(&found, talk);
-    match ids.is_empty() {
-        true => Err(Error::device(
+    if ids.is_empty() {
+        return Err(Error::device(
             "no servo of ids 1-18 answers",
             "`handstand bus scan` looks for others, --ids names them; of none, `handstand bus \
              doctor` finds the cause",
-        )),
-        false => Ok(ids),
+        ));
     }
+    Ok(ids)
 }
 
 /// Says in a line each which servos answer, and of which only bytes came.

@@ -80,7 +80,8 @@ pub fn or_dash<V>(value: Option<V>, text: impl Fn(V) -> String) -> String {
 pub fn held(runs: usize) -> Option<String> {
     (runs > 0).then(|| {
         format!(
-            "{runs} runs stay without any command, held by friction: they do not count as stabilised."
+            "{runs} runs stay without any command, held by friction: they do not count as \
+             stabilised."
         )
     })
 }

@@ -1,8 +1,8 @@
 //! A first look at every candidate on top of a hypothesis.
 //!
-//! All get a glance, a fit as far as derivatives known before lead; the best third, but the best few
-//! only where the rest is hopeless beside the first, gets a look, for which derivatives are taken
-//! again.
+//! All get a glance, a fit as far as derivatives known before lead; the best third, but the best
+//! few only where the rest is hopeless beside the first, gets a look, for which derivatives are
+//! taken again.
 
 use super::budget::{FINALISTS, LOOK, SECOND_LOOKS};
 use super::evaluator::Evaluator;

@@ -112,7 +112,8 @@ pub(crate) fn change(wrong: &WrongValue) -> String {
 }
 
 /// "96 % of the squared error" that what was found removes; nothing where it removes none. Of
-/// effects what refitted values alone remove is not their own: "of what refitted values leave of it".
+/// effects what refitted values alone remove is not their own: "of what refitted values leave of
+/// it".
 fn share(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
     let gains = |rad: &f64| !diagnosis.effects.is_empty() && *rad < 0.999 * error.before_rad;

@@ -4,9 +4,8 @@
 //! without friction whirls away. Here plain friction is added, and what the rig's drives determine
 //! (mass times lever, friction, gain or limit of speed) is fitted roughly to short windows, from
 //! starts an order of magnitude apart. Of a driven arm other zeros of the angles and other signs of
-//! the inputs are tried, too. What the log hardly determines
-//! stays free all the same, and is said to be a guess: held wrong, it bends what is looked for
-//! beside it.
+//! the inputs are tried, too. What the log hardly determines stays free all the same, and is said
+//! to be a guess: held wrong, it bends what is looked for beside it.
 
 mod course;
 mod levers;

@@ -44,8 +44,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Whether both hold the same samples to the last digit, whatever they are called. A zero is one
-    /// with either sign, and a gap is a gap.
+    /// Whether both hold the same samples to the last digit, whatever they are called. A zero is
+    /// one with either sign, and a gap is a gap.
     pub fn holds_the_same(&self, other: &Motion) -> bool {
         let bits = |row: &[f64]| {
             // -0.0 + 0.0 is 0.0.

@@ -106,7 +106,7 @@ fn responses(design: &Design, initial: &LoopResponse, step: &LoopResponse) -> Se
         h3 { (format!("From a lean of {lean_deg:.0} deg of the first joint")) }
         (angles(design, initial))
         (commands(design, initial))
-        h3 { (format!("Under a torque of {STEP_NM} N m on the first joint that comes on and stays")) }
+        h3 { (format!("Under a lasting torque of {STEP_NM} N m on the first joint")) }
         (angles(design, step))
         (commands(design, step))
     };

@@ -17,8 +17,8 @@ pub struct LoopResponse {
     pub command: Vec<Vec<f64>>,
 }
 
-/// Simulates the loop of a design under the law that is exported for `seconds` from these departures from its pose, rad, at rest;
-/// it ends early where the robot falls.
+/// Simulates the loop of a design under the law that is exported for `seconds` from these
+/// departures from its pose, rad, at rest; it ends early where the robot falls.
 ///
 /// # Errors
 /// Models that cannot be simulated.
@@ -108,7 +108,8 @@ mod tests {
         let request = Request::standard(&model);
         let design = Design::of(&model, &request).unwrap();
         let stepped = step_response(&model, &design, &request, 1e-3, 12.0).unwrap();
-        // -9.04, 16.09 and 12.74 deg for 0.01 N m. The table's rounding alone changes that by a tenth.
+        // -9.04, 16.09 and 12.74 deg for 0.01 N m. The table's rounding alone changes that by a
+        // tenth.
         for (angles, deg) in stepped.angle_rad.iter().zip([-0.904, 1.609, 1.274]) {
             let last = angles.last().unwrap().to_degrees();
             assert!((last - deg).abs() < 0.15 * deg.abs(), "{last} {deg}");

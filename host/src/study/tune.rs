@@ -51,8 +51,8 @@ pub struct Tuned {
     /// All that was tried and could be designed, the request's own weights first.
     pub tried: Vec<Tried>,
     /// The chosen one: its place among them. Region and disk margin are not smaller than the first
-    /// one's, and its region was searched. Of those, one with a margin of 6 dB is taken if there is any, then the largest
-    /// region, then the largest margin.
+    /// one's, and its region was searched. Of those, one with a margin of 6 dB is taken if there is
+    /// any, then the largest region, then the largest margin.
     pub chosen: usize,
 }
 

@@ -17,9 +17,9 @@ fn a_scan_finds_who_is_there() {
     assert_eq!(ids, [1, 3, 200]);
     let through = bench.run("bus scan --port sim-cm5:ids=1-3 --ids 1-5 --json");
     assert_eq!(through.json().as_array().unwrap().len(), 3, "{through:?}");
-    let nobody = bench.run("bus scan --port sim:dead=1-18 --ids 1-18");
-    assert_eq!(nobody.code, Some(4), "{nobody:?}");
-    assert!(nobody.stderr.contains("bus doctor"), "{nobody:?}");
+    let silent = bench.run("bus scan --port sim:dead=1-18 --ids 1-18");
+    assert_eq!(silent.code, Some(4), "{silent:?}");
+    assert!(silent.stderr.contains("bus doctor"), "{silent:?}");
 }
 
 /// One that answers a ping and no reading ends no scan, and the remedy that the doctor gives helps.

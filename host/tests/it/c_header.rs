@@ -66,8 +66,8 @@ fn silent(command: &mut Command) {
     );
 }
 
-/// 0 differences in 100 000 states of 50 random designs, all headers in one file: wide integers, the
-/// compiled header, and the controller of the simulated loop.
+/// 0 differences in 100 000 states of 50 random designs, all headers in one file: wide integers,
+/// the compiled header, and the controller of the simulated loop.
 #[test]
 fn random_designs_compute_what_the_law_does() {
     let model = Model::parse(MODEL, Path::new("handstand.toml")).unwrap();

@@ -80,8 +80,8 @@ impl Response {
 }
 
 impl LabServer {
-    /// `program lab` with these words in a folder, its sessions in `sessions` there; nobody has come
-    /// in yet.
+    /// `program lab` with these words in a folder, its sessions in `sessions` there; no client has
+    /// come in yet.
     pub fn start_alone<S: AsRef<OsStr>>(
         program: &Path,
         folder: &Path,
@@ -208,9 +208,10 @@ impl LabServer {
         let body = bytes.split_off(end + 4);
         Response {
             status: status.unwrap(),
-            body: match head.to_lowercase().contains("transfer-encoding: chunked") {
-                true => joined(&body),
-                false => body,
+            body: if head.to_lowercase().contains("transfer-encoding: chunked") {
+                joined(&body)
+            } else {
+                body
             },
             head,
         }

@@ -1,9 +1,9 @@
 //! Equations of motion of three links on a bar, by the Jacobians of their centres of mass.
 //!
-//! With q the angles between links, upright at 0, link b at t_b = q_1 + .. + q_b, its centre of mass
-//! is p_b = sum_{i<b} l_i e(t_i) + c_b e(t_b), e(t) = (sin t, cos t). Joint j turns everything beyond
-//! it, so that column j of the Jacobian is p_b - (place of joint j), turned by a right angle. Then
-//! M = sum m J'J + I w'w, and the forces are sum J' m (g - acceleration at q'' = 0).
+//! With q the angles between links, upright at 0, link b at t_b = q_1 + .. + q_b, its centre of
+//! mass is p_b = sum_{i<b} l_i e(t_i) + c_b e(t_b), e(t) = (sin t, cos t). Joint j turns everything
+//! beyond it, so that column j of the Jacobian is p_b - (place of joint j), turned by a right
+//! angle. Then M = sum m J'J + I w'w, and the forces are sum J' m (g - acceleration at q'' = 0).
 
 use super::robot::Link;
 

@@ -161,8 +161,8 @@ impl<'a> Simulation<'a> {
         self.read(&before);
     }
 
-    /// Speeds after the impulses of dry friction: each joint's is the one that brings it to rest, or
-    /// the largest that its friction has. Gauss and Seidel's sweeps find them all.
+    /// Speeds after the impulses of dry friction: each joint's is the one that brings it to rest,
+    /// or the largest that its friction has. Gauss and Seidel's sweeps find them all.
     fn rubbed(&self, free: Joints) -> Joints {
         let mass = Equations::at(&self.robot.links, &self.q, &[0.0; 3]).mass;
         let unit = |j: usize| solve(&mass, std::array::from_fn(|k| f64::from(u8::from(j == k))));

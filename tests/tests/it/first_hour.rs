@@ -14,9 +14,9 @@ fn walked(seed: u64) -> (Hidden, End) {
 
 /// Springs that mass and inertia, both guessed, or a scale of the encoder nearly take the place of;
 /// a dead zone whose width does not show beside its punch, at one link and at two, where friction
-/// hides behind it; a delay whose drive's figures are guessed; friction behind goals, read in counts
-/// whose number a turn is not named; a short pendulum that the air brakes; two links that swing
-/// freely, one of which rubs.
+/// hides behind it; a delay whose drive's figures are guessed; friction behind goals, read in
+/// counts whose number a turn is not named; a short pendulum that the air brakes; two links that
+/// swing freely, one of which rubs.
 #[test]
 fn first_models_lead_to_what_is_hidden() {
     let found = [1, 6, 7, 11, 12, 25].map(|seed| (seed, false));

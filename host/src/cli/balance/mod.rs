@@ -10,9 +10,9 @@
 //! $ handstand balance handstand.toml --port sim-cm5:robot=handstand.toml,start=held --yes
 //! ```
 //!
-//! `--dry-run` designs the plan of a model, tries it out from ten starts as `handstand deploy` does,
-//! says whether it holds the robot (exit code 1 where it does not) and reaches no CM-5; `--json`
-//! then prints `fingerprint`, `effects`, `verdict`.
+//! `--dry-run` designs the plan of a model, tries it out from ten starts as `handstand deploy`
+//! does, says whether it holds the robot (exit code 1 where it does not) and reaches no CM-5;
+//! `--json` then prints `fingerprint`, `effects`, `verdict`.
 //!
 //! Step by step: the driven servos get into wheel mode and all of `--ids` return delay 0, which
 //! their EEPROM keeps (read back; `handstand bus restore` brings the old limits back); the servos

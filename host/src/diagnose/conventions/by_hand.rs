@@ -44,9 +44,12 @@ pub(super) fn held_by_hand(model: &Model, motions: &[Motion]) -> Option<LeaveOut
         });
         let is_longer =
             |run: &Range<usize>, than: &Range<usize>| 4 * run.len() > 5 * than.len() + 4 * LONGER;
-        let first = held.reduce(|narrow, wide| match is_longer(&wide, &narrow) {
-            true => wide,
-            false => narrow,
+        let first = held.reduce(|narrow, wide| {
+            if is_longer(&wide, &narrow) {
+                wide
+            } else {
+                narrow
+            }
         });
         let last = still.at_end().filter(|run| is_caught(model, &still, run));
         runs.extend([first, last].into_iter().flatten().map(|run| (index, run)));
@@ -149,8 +152,8 @@ fn is_held(model: &Model, still: &Still, run: &Range<usize>) -> bool {
 }
 
 /// Whether friction cannot have stopped a rig of one joint where it stands still at last: it turned
-/// round nearer to its rest, where less pulls it, and swung on; or it stopped from full motion where
-/// more pulls it than friction took from its swings.
+/// round nearer to its rest, where less pulls it, and swung on; or it stopped from full motion
+/// where more pulls it than friction took from its swings.
 fn is_caught(model: &Model, still: &Still, run: &Range<usize>) -> bool {
     if model.link_count() != 1 || !is_off(model, still.motion, &(0..still.motion.len())) {
         return false;
@@ -246,7 +249,8 @@ impl Swing<'_> {
         step_rad > STEPS * held_rad_s2 * step_s * step_s + STILL * self.sigma_rad
     }
 
-    /// The least friction, rad/s^2, that any swing from one side to the other shows; infinite of none.
+    /// The least friction, rad/s^2, that any swing from one side to the other shows; infinite of
+    /// none.
     fn least_friction_rad_s2(&self, turning: &[usize]) -> f64 {
         let swings = turning.windows(2).filter_map(|pair| {
             let [from, to] = [pair[0], pair[1]].map(|k| self.angle(k));

@@ -3,7 +3,7 @@ use crate::challenge::{Bench, Motions, bench};
 use crate::diagnose::pipeline::Searched;
 use crate::diagnose::progress::Course;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use crate::fitting::{Candidate, Fit, Horizon, fit_start_states, stated};
+use crate::fitting::{Candidate, Fit, Horizon, fit_start_states};
 use crate::log::{LogRequest, Motion, read};
 use crate::model::Model;
 use std::path::Path;
@@ -349,32 +349,6 @@ fn a_second_search_explains_what_the_first_does_not() {
     assert_eq!(diagnosis.effects.len(), 3);
     let error = &diagnosis.error;
     assert!(error.after_rad < 1.1 * error.floor_rad, "{error:?}");
-}
-
-/// What an arm that hides one effect leaves once it is evaluated, and once its values are stated:
-/// length of the steps, s, and squared error in variances of a reading.
-fn evaluated_and_stated(seed: u64, kind: &'static str, values: &[f64]) -> [(f64, f64); 2] {
-    let evaluator = evaluator(seed, &[kind]);
-    let mut set = fitted(&evaluator, &[kind], [values]);
-    evaluator.evaluate(&mut set);
-    let stated = stated(set.fit().clone(), &evaluator.training);
-    [set.fit(), &stated].map(|fit| (fit.model.step_s, fit.residuals.cost()))
-}
-
-/// Some of what a breaking away tells is worth less than what explanations are told apart by.
-#[test]
-fn stated_values_lie_on_a_lower_stair() {
-    let [evaluated, stated] = evaluated_and_stated(2, "stribeck", &[0.0394, 0.132]);
-    assert_eq!(evaluated.0, stated.0);
-    assert!(stated.1 < evaluated.1 - 2.0, "{stated:?} {evaluated:?}");
-}
-
-/// Torque that falls between two steps: less than a verdict hangs on, more than the values' errors.
-#[test]
-fn stated_values_are_those_of_shorter_steps() {
-    let [evaluated, stated] = evaluated_and_stated(5, "fold_back", &[0.4195, 0.06056, 0.2389]);
-    assert!(stated.0 < evaluated.0, "{stated:?} {evaluated:?}");
-    assert!(stated.1 < evaluated.1, "{stated:?} {evaluated:?}");
 }
 
 /// An arm at rest whose logs begin with the first command: the late drive was told nothing before.

@@ -23,9 +23,9 @@ const CARRIED: std::ops::RangeInclusive<f64> = 0.6..=0.8;
 /// Least share of its pull of gravity that a link keeps where the one behind it grows heavier.
 const LEFT: f64 = 0.25;
 
-/// What is fitted, and the levers of links whose inertia is; these keep to the model's bounds, which
-/// are set: a lever below zero is a mass on the other side, another zero of the angles. Beside a
-/// motor whose strength is a guess a lever stays at its own: both scale alike.
+/// What is fitted, and the levers of links whose inertia is; these keep to the model's bounds,
+/// which are set: a lever below zero is a mass on the other side, another zero of the angles.
+/// Beside a motor whose strength is a guess a lever stays at its own: both scale alike.
 pub(super) fn with_levers(free: &[ParameterPath], model: &mut Model) -> Vec<ParameterPath> {
     let moved = |index: &usize| model.joints[*index].drive.motor().is_none();
     let levers = fitted_inertias(free).filter(moved);
@@ -35,9 +35,10 @@ pub(super) fn with_levers(free: &[ParameterPath], model: &mut Model) -> Vec<Para
     });
     let levers: Vec<ParameterPath> = levers.filter(|path| !free.contains(path)).collect();
     for path in &levers {
-        let guess = path.get(model).unwrap_or_default();
-        let bounds = (guess / ANY_LEVER, guess * ANY_LEVER);
-        model.bounds.push((*path, bounds));
+        if let Some(guess) = path.get(model) {
+            let bounds = (guess / ANY_LEVER, guess * ANY_LEVER);
+            model.bounds.push((*path, bounds));
+        }
     }
     [free, &levers].concat()
 }
@@ -115,11 +116,12 @@ fn fitted_inertias(free: &[ParameterPath]) -> impl Iterator<Item = usize> + '_ {
     })
 }
 
-/// The first link, where its lever leaves its inertia little room below what was fitted.
+/// The first link, where its lever leaves its inertia little room below what was fitted; not one
+/// whose centre of mass was fitted behind its joint.
 fn crowded(model: &Model, free: &[ParameterPath]) -> Option<usize> {
     let link = &model.links[0];
     let about_mass_kg_m2 = link.mass_kg * link.com_m * link.com_m;
-    let is_crowded = link.inertia_kg_m2 < ROOM * about_mass_kg_m2;
+    let is_crowded = link.com_m > 0.0 && link.inertia_kg_m2 < ROOM * about_mass_kg_m2;
     fitted_inertias(free).find(|index| *index == 0 && is_crowded)
 }
 
@@ -179,8 +181,8 @@ fn carries(links: &mut [Link], index: usize, more_kg: f64) -> bool {
     link.inertia_kg_m2 > 0.0 && carries(links, before, more_kg + own_kg)
 }
 
-/// Moves a link's centre of mass, the pull of gravity and the inertia about the joint kept; the mass
-/// that this adds, kg.
+/// Moves a link's centre of mass, the pull of gravity and the inertia about the joint kept; the
+/// mass that this adds, kg.
 fn move_com(link: &mut Link, com_m: f64) -> f64 {
     let pull_kg_m = link.mass_kg * link.com_m;
     let about_joint_kg_m2 = link.inertia_kg_m2 + pull_kg_m * link.com_m;
@@ -241,6 +243,19 @@ mod tests {
                 assert!(pull.amax() < 1e-12, "{index} {com_m}: {pull}");
             }
         }
+    }
+
+    #[test]
+    fn a_centre_of_mass_behind_the_joint_is_not_crowded() {
+        let inertia = ParameterPath::Link {
+            index: 0,
+            field: LinkField::Inertia,
+        };
+        let mut model = hanging();
+        model.links[0].inertia_kg_m2 = 1e-4;
+        assert_eq!(crowded(&model, &[inertia]), Some(0));
+        model.links[0].com_m = -0.08;
+        assert_eq!(crowded(&model, &[inertia]), None);
     }
 
     #[test]

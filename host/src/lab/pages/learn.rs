@@ -49,7 +49,9 @@ fn shown(
         section {
             h2 { "What is missing?" }
             (ask(saved, evaluation))
-            @if let Some(diagnosis) = &saved.diagnosis { (said(session.number, saved, diagnosis, evaluation)) }
+            @if let Some(diagnosis) = &saved.diagnosis {
+                (said(session.number, saved, diagnosis, evaluation))
+            }
             @if let Some(proposal) = saved.proposal() { (proposed(session.number, proposal)) }
         }
         section {
@@ -210,7 +212,9 @@ fn cards(
         @if !out.is_empty() {
             details.folded #ruled-out {
                 summary { "Ruled out: " (out.len())
-                    @if out.len() == 1 { " explanation" } @else { " explanations, the nearest first" } }
+                    @if out.len() == 1 { " explanation" }
+                    @else { " explanations, the nearest first" }
+                }
                 div.cards { @for each in out { (drawn(each)) } }
             }
         }
@@ -234,8 +238,8 @@ fn fit_what(model: &Model) -> Markup {
                         th.number { "At least" } th.number { "At most" } } }
                     tbody { @for (path, value) in values { (fit_row(path, value, model)) } }
                 } }
-                p.note { "Bounds are written into the model: later fits and diagnoses heed them. Empty, \
-                          a value may be whatever is possible, which stands there in grey." }
+                p.note { "Bounds are written into the model: later fits and diagnoses heed them. \
+                          Empty, a value may be whatever is possible, which stands there in grey." }
                 div.row { button data-work { "Fit what is ticked" } }
             }
         }

@@ -67,7 +67,8 @@ fn guessed(draft: &Draft) -> Markup {
     html! {
         form #from-log data-send="model-from-log" {
             p.lead { "Friction, masses or the motor's figures, and the zero can be estimated from \
-                      the log: a fit of some seconds. What you know of the rig comes later, or below." }
+                      the log: a fit of some seconds. What you know of the rig comes later, or \
+                      below." }
             div.row { button.main data-work { "Estimate a model from the log" } }
         }
         (progress(None))

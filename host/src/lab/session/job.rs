@@ -60,9 +60,12 @@ pub struct JobBest {
 impl From<&BestSoFar> for JobBest {
     fn from(best: &BestSoFar) -> Self {
         // Values of the model stand there by their address: `link1.com_m`.
-        let name = |address: &String| match address.contains('.') {
-            true => format!("another {}", value_name(address)),
-            false => effect_name(address),
+        let name = |address: &String| {
+            if address.contains('.') {
+                format!("another {}", value_name(address))
+            } else {
+                effect_name(address)
+            }
         };
         JobBest {
             name: match best.names.as_slice() {

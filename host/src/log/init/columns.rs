@@ -248,8 +248,8 @@ impl GuessReader<'_> {
         })
     }
 
-    /// Whether an angle whose name says no unit goes farther than one in rad. One program writes all
-    /// its angles in one unit.
+    /// Whether an angle whose name says no unit goes farther than one in rad. One program writes
+    /// all its angles in one unit.
     fn some_angle_is_deg(&self) -> bool {
         let is_open = |index: &usize| {
             let name = &self.names[*index];

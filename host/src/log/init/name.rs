@@ -111,8 +111,8 @@ fn is_number_of_joint(bare: &str, text: &str) -> bool {
     is_number && !(text == "1" && is_duty())
 }
 
-/// Whether a name is that of a topic of ROS joint states, or of the state of a controller of joints,
-/// as PlotJuggler writes it, or `rostopic echo -p`.
+/// Whether a name is that of a topic of ROS joint states, or of the state of a controller of
+/// joints, as PlotJuggler writes it, or `rostopic echo -p`.
 pub fn is_joint_state(name: &str) -> bool {
     let name = name.to_lowercase();
     let printed = ["field.position", "field.velocity", "field.effort"];

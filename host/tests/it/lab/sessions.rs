@@ -133,7 +133,8 @@ fn values_are_fitted_within_bounds_as_on_the_command_line() {
         "the page shows what is in force"
     );
 
-    // Lifted, the value goes on towards where it belongs; friction, which the model lacks, keeps it.
+    // Lifted, the value goes on towards where it belongs; friction, which the model lacks, keeps
+    // it.
     let begun = fit(json!([{ "path": "link1.com_m", "low": null, "high": null }]));
     assert_eq!(begun.status, 200, "{}", begun.text());
     assert_eq!(server.wait()["state"], "done");
