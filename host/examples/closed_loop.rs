@@ -8,7 +8,9 @@
 use handstand::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, Outcome, StateFeedback, stream,
 };
-use handstand::synth::{Design, Format, Readings, Request, Time, Weight, rows, upright};
+use handstand::synth::{
+    CostWeights, Design, Format, Readings, Request, Time, Weight, rows, upright,
+};
 use handstand::{Model, Result};
 use std::path::Path;
 
@@ -56,8 +58,7 @@ pub fn held_from(degrees: f64) -> Result<Outcome> {
 fn request(robot: &Model) -> Request {
     Request {
         pose_rad: upright(robot),
-        q: Weight::Scalar(100.0),
-        r: Weight::Scalar(1.0),
+        weights: CostWeights::PAPER,
         time: Time::Sampled {
             ts_s: PERIOD_S,
             delay_s: None,

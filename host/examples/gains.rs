@@ -4,7 +4,7 @@
 //! cargo run --release --example gains
 //! ```
 
-use handstand::synth::{Design, Format, Readings, Request, Time, Weight, upright};
+use handstand::synth::{CostWeights, Design, Format, Readings, Request, Time, Weight, upright};
 use handstand::{Model, Result};
 use std::path::Path;
 
@@ -28,8 +28,7 @@ pub fn regulator() -> Result<Design> {
     let robot = Model::parse(ROBOT, Path::new("handstand.toml"))?;
     let request = Request {
         pose_rad: upright(&robot),
-        q: Weight::Scalar(100.0),
-        r: Weight::Scalar(1.0),
+        weights: CostWeights::PAPER,
         time: Time::Sampled {
             ts_s: 0.01,
             delay_s: Some(0.01),

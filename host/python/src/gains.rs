@@ -9,7 +9,7 @@ use handstand::fitting::Progress;
 use handstand::report::{gains_json, margins_json, margins_text, with_margins};
 use handstand::study::{Verification, left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, LoopFigures, Request, Time, Weight, balanced};
+use handstand::synth::{CostWeights, Design, LoopFigures, Request, Time, Weight, balanced};
 use nalgebra::DMatrix;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -35,7 +35,9 @@ pub struct Gains {
 /// ----------
 /// model : Model
 /// q, r : a number, a diagonal or a matrix
-///     Weights of states and inputs; 100 and 1 without.
+///     Weights of states and inputs. Without both, one over the square of the largest departure of
+///     each: 0.5 rad, 10 rad/s, the drive's limit (Bryson's rule). `q` alone goes with 1; the
+///     paper's weights are `q=100`.
 /// ts_s : float or None
 ///     Sampling time, s; `None` designs in continuous time.
 /// delay_s : float
@@ -69,9 +71,19 @@ pub fn gains(
 ) -> PyResult<Gains> {
     let model = model.borrow().clone();
     let standard = Request::standard(&model.inner);
-    let weight = |name, given: Option<&Bound<'_, PyAny>>, otherwise: &Weight| match given {
-        Some(given) => weight(name, given),
-        None => Ok(otherwise.clone()),
+    let weights = match (q, r) {
+        (Some(q), Some(r)) => CostWeights::Given {
+            q: weight("q", q)?,
+            r: weight("r", r)?,
+        },
+        (Some(q), None) => CostWeights::Given {
+            q: weight("q", q)?,
+            r: Weight::Scalar(1.0),
+        },
+        (None, None) => standard.weights.clone(),
+        (None, Some(_)) => {
+            return Err(usage("weights of the inputs alone", "give q as well"));
+        }
     };
     let mut pose_rad = match pose_rad {
         Some(given) => numbers("pose_rad", given)?,
@@ -82,8 +94,7 @@ pub fn gains(
     }
     let request = Request {
         pose_rad,
-        q: weight("q", q, &standard.q)?,
-        r: weight("r", r, &standard.r)?,
+        weights,
         time: match ts_s {
             Some(ts_s) => Time::Sampled { ts_s, delay_s },
             None => Time::Continuous,

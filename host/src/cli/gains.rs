@@ -5,10 +5,11 @@
 //! `handstand add` writes will do: effects without a derivative (Coulomb friction, dead zones, ..)
 //! are left out of the design, which says so; `--without` leaves out one more, which the simulated
 //! loop keeps.
-//! Weights are one number (times the identity), a diagonal `1,1,0.1`, or a CSV file of a matrix.
+//! Weights follow from ranges (Bryson's rule) unless given: one number (times the identity), a
+//! diagonal `1,1,0.1`, or a CSV file of a matrix.
 //!
 //! ```console
-//! $ handstand gains handstand.toml --q 100 --r 1 --ts 0.01 --rust gains.rs --c gains.h
+//! $ handstand gains handstand.toml --ts 0.01 --rust gains.rs --c gains.h
 //! ```
 //!
 //! Then the loop is simulated with every effect of the model, those that the design leaves out
@@ -43,11 +44,13 @@ use request::{Pose, SpeedsArg, pose};
 pub struct GainsArgs {
     /// Model file
     model: PathBuf,
-    /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: 100]
+    /// Weight of the states: a number, a diagonal, or a CSV file of a matrix [default: one over the
+    /// square of each --range; the paper's are 100]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     q: Option<WeightArg>,
-    /// Weight of the inputs, likewise [default: 1]
+    /// Weight of the inputs, likewise [default: one over the square of each --limit; 1 with --q]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
+    #[arg(requires = "q")]
     r: Option<WeightArg>,
     /// Search weights with the largest region under all effects of the model, margins kept
     #[arg(long, conflicts_with_all = ["q", "r", "continuous"])]
@@ -185,6 +188,9 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
             made: &made,
         })?;
         talk.write(file, &page, args.force)?;
+    }
+    if !verified.stabilised && !verified.held && !args.tune && !args.continuous {
+        talk.say("--tune looks for weights that hold it");
     }
     Ok(ExitStatus::answer(verified.stabilised))
 }

@@ -54,8 +54,8 @@ pub fn state_radius(model: &Model, design: &Design, basis: &PlanBasis) -> Result
 mod tests {
     use super::*;
     use crate::deploy::{Board, ToldDrives, state_design};
-    use crate::synth::Request;
     use crate::synth::controllers::BoardTiming;
+    use crate::synth::{CostWeights, Request};
 
     /// The paper's weights on differences: known to be unstable, and far from it.
     #[test]
@@ -65,7 +65,11 @@ mod tests {
         let timing = BoardTiming::HOST_ATTITUDE;
         let none = ToldDrives::default();
         let basis = PlanBasis::of(&model, &Board::BIOLOID, &timing, &none).unwrap();
-        let design = state_design(&model, Request::standard(&model), &basis.board).unwrap();
+        let request = Request {
+            weights: CostWeights::PAPER,
+            ..Request::standard(&model)
+        };
+        let design = state_design(&model, request, &basis.board).unwrap();
         let radius = state_radius(&model, &design, &basis).unwrap();
         // 2.40, from the growth over 20 ticks of a simulation in steps of 0.1 ms written apart.
         assert!((2.3..2.6).contains(&radius), "{radius}");

@@ -46,7 +46,7 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
     if is_low(&margins.inputs) || margins.sensors.as_ref().is_some_and(is_low) {
         lines.push(format!(
             "LOW MARGINS: below {} dB or {} deg in all channels at once; weigh the speeds less or \
-             the inputs more (--q, --r)",
+             the inputs more (--q, --r), or try --tune",
             LOW.0, LOW.1
         ));
     }

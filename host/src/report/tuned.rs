@@ -1,10 +1,15 @@
 //! What a search of weights found, in words.
 
 use crate::study::{Tried, Tuned};
+use crate::synth::Weight;
 
-/// The chosen weights as options, and how they compare with the request's own.
+/// The chosen weights as options, and how they compare with plain ones.
 pub fn tuned_text(tuned: &Tuned) -> String {
-    let figures = |one: &Tried| {
+    let figures = |place: usize| {
+        let one = &tuned.tried[place];
+        if one.region_rad == 0.0 {
+            return "NOT stabilised".to_string();
+        }
         let reach = if one.region_open {
             "at least"
         } else {
@@ -16,21 +21,15 @@ pub fn tuned_text(tuned: &Tuned) -> String {
             one.disk_margin
         )
     };
-    let chosen = &tuned.tried[tuned.chosen];
-    let weights = match (&chosen.q, &chosen.r) {
-        (Some(q), Some(r)) => format!("--q {} --r {}", options(q), options(r)),
-        _ => "the weights without --tune, which none of the others surpasses".to_string(),
-    };
+    let list = |values: &[f64]| Weight::Diagonal(values.to_vec());
+    let Tried { q, r, .. } = &tuned.tried[tuned.chosen];
     format!(
-        "tuned, of {} weights: {weights}: {}; without --tune: {}",
+        "tuned, of {} weights: --q {} --r {}: {}; by Bryson's rule: {}; the paper's (--q 100): {}",
         tuned.tried.len(),
-        figures(chosen),
-        figures(&tuned.tried[0])
+        list(q),
+        list(r),
+        figures(tuned.chosen),
+        figures(0),
+        figures(1)
     )
-}
-
-/// Every digit, so that the options make the same gains.
-fn options(values: &[f64]) -> String {
-    let values: Vec<String> = values.iter().map(f64::to_string).collect();
-    values.join(",")
 }

@@ -133,7 +133,7 @@ pub(super) fn ellipsoid(
 mod tests {
     use super::*;
     use crate::study::{left_out, verify};
-    use crate::synth::Request;
+    use crate::synth::{CostWeights, Request};
     use std::path::Path;
 
     /// The weak direction is that of an independent computation; across it the region is wide.
@@ -142,7 +142,10 @@ mod tests {
         let text = include_str!("../../models/handstand.toml").to_string()
             + "\n[[effect]]\nkind = \"torque_saturation\"\njoint = \"all\"\nlimit_nm = 2.0\n";
         let model = Model::parse(&text, Path::new("handstand.toml")).unwrap();
-        let request = Request::standard(&model);
+        let request = Request {
+            weights: CostWeights::PAPER,
+            ..Request::standard(&model)
+        };
         let design = Design::of(&model, &request).unwrap();
         let left_out = left_out(&model, &model, &design);
         let verified = verify(&model, &design, &request, &left_out, &|| ()).unwrap();

@@ -11,7 +11,7 @@ use super::omitted::OmittedEffect;
 use super::operating_point::input_delay_s;
 use super::quantise::{Ranges, largest_word, power_of_two_above, quantise};
 use super::request::{Request, Sensors, Time};
-use super::signal::{Signal, default_limit, input, states};
+use super::signal::{Signal, input, states};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
 use super::zoh;
@@ -95,22 +95,26 @@ impl Design {
             inputs: u0,
             omitted,
         } = linearise(model, &request.pose_rad)?;
-        let (n, m) = plant.b.shape();
-        let r = request.r.matrix("R", m, "inputs")?;
-        let (gains, sampled, q) = match request.time {
+        let n = plant.a.nrows();
+        let state_range = request.state_ranges(n)?;
+        let input_range = request.input_ranges(model)?;
+        let weigh = |with_past| {
+            request
+                .weights
+                .matrices(&state_range, &input_range, with_past)
+        };
+        let (gains, sampled, weights) = match request.time {
             Time::Continuous => {
-                let q = request.q.matrix("Q", n, "states")?;
-                (lqr(&plant, &q, &r)?, None, q)
+                let [q, r] = weigh(n)?;
+                (lqr(&plant, &q, &r)?, None, [q, r])
             }
             Time::Sampled { ts_s, delay_s } => {
                 let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
                 let sampled = zoh(&plant, ts_s, delay_s)?;
-                let all = sampled.a.nrows();
-                let size = request.q.size().filter(|size| *size == all).unwrap_or(n);
-                let q = request.q.matrix("Q", size, "states")?;
+                let [q, r] = weigh(sampled.a.nrows())?;
                 let gains = dlqr(&sampled, &q, &r);
                 let gains = gains.map_err(|error| by_sampling(error, &plant, ts_s))?;
-                (gains, Some((sampled, delay_s)), q)
+                (gains, Some((sampled, delay_s)), [q, r])
             }
         };
         let driven = model.driven_joints();
@@ -130,7 +134,7 @@ impl Design {
             zeros: transmission_zeros(&plant.a, &plant.b, &outputs)?,
             controllability: controllability(&plant.a, &plant.b)?,
             observability: observability(&plant.a, &angles)?,
-            weights: [q, r],
+            weights,
             inputs,
             plant,
             sampled,
@@ -139,14 +143,11 @@ impl Design {
             fixed: None,
         };
         if let Some((sampled, _)) = design.sampled.clone() {
-            let input_range = match &request.input_range {
-                Some(range) => range.diagonal("the range of inputs", m)?,
-                None => driven
-                    .iter()
-                    .map(|&joint| default_limit(model, joint))
-                    .collect(),
+            let ranges = Ranges {
+                state: state_range,
+                input: input_range.clone(),
             };
-            design.fixed = Some(design.fixed(request, &sampled, input_range.clone())?);
+            design.fixed = Some(design.fixed(request, &sampled, ranges)?);
             if let Some(sensors) = &request.sensors {
                 design.estimator = Some(design.estimator(sensors, sampled, &input_range)?);
             }
@@ -158,11 +159,9 @@ impl Design {
         &self,
         request: &Request,
         plant: &Discrete,
-        input: Vec<f64>,
+        mut ranges: Ranges,
     ) -> Result<Fixed, DesignError> {
-        let mut state = request
-            .state_range
-            .diagonal("the range of states", plant.plant_states())?;
+        let Ranges { state, input } = &mut ranges;
         let mut format = request.format.clone();
         if plant.delayed_inputs > 0 {
             // Past inputs come back in the steps in which they went out.
@@ -178,11 +177,10 @@ impl Design {
             let mut steps = format.state_step.take().unwrap_or_else(|| own.collect());
             for _ in 0..plant.delayed_inputs {
                 steps.extend(&input_step);
-                state.extend(&input);
+                state.extend(&*input);
             }
             (format.state_step, format.input_step) = (Some(steps), Some(input_step));
         }
-        let ranges = Ranges { state, input };
         let law = quantise(&self.gains.k, &self.x0, &self.u0, &ranges, &format)?;
         let loss = law.loss(plant, &self.gains, &self.x0, &self.u0, &ranges.state)?;
         if loss.radius_fixed >= 1.0 {

@@ -7,6 +7,7 @@
 
 mod controllability;
 pub mod controllers;
+mod cost_weights;
 mod design;
 mod discretise;
 mod eigen;
@@ -37,6 +38,7 @@ mod zeros;
 
 pub use crate::model::upright;
 pub use controllability::{Controllability, controllability, observability};
+pub use cost_weights::CostWeights;
 pub use design::{Design, Estimation, Fixed};
 pub use discretise::{zoh, zoh_each};
 pub use eigen::{Mode, poles};

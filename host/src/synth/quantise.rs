@@ -162,7 +162,7 @@ impl GainRow {
     }
 }
 
-fn positive(
+pub(super) fn positive(
     what: &'static str,
     of: &'static str,
     values: &[f64],

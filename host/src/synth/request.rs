@@ -1,6 +1,9 @@
 //! What a design is asked for.
 
-use super::quantise::Format;
+use super::cost_weights::CostWeights;
+use super::error::DesignError;
+use super::quantise::{Format, positive};
+use super::signal::default_limit;
 use super::weight::Weight;
 use crate::model::{Model, upright};
 use crate::sim::closed_loop::Velocity;
@@ -10,10 +13,8 @@ use crate::sim::closed_loop::Velocity;
 pub struct Request {
     /// Angles in the model's own convention, rad.
     pub pose_rad: Vec<f64>,
-    /// Weight of the states.
-    pub q: Weight,
-    /// Weight of the inputs.
-    pub r: Weight,
+    /// Weights of states and inputs.
+    pub weights: CostWeights,
     /// How the gains will run.
     pub time: Time,
     /// Sensors and noise, for an estimator.
@@ -29,14 +30,13 @@ pub struct Request {
 }
 
 impl Request {
-    /// Upright; Q = 100 I, R = I; every 10 ms, the inputs as late as the model has them; departures
-    /// within 0.5 rad and 10 rad/s; words of 16 bits.
+    /// Upright; weights by Bryson's rule; every 10 ms, the inputs as late as the model has them;
+    /// departures within 0.5 rad and 10 rad/s; words of 16 bits.
     pub fn standard(model: &Model) -> Request {
         let joints = model.link_count();
         Request {
             pose_rad: upright(model),
-            q: Weight::Scalar(100.0),
-            r: Weight::Scalar(1.0),
+            weights: CostWeights::BRYSON,
             time: Time::Sampled {
                 ts_s: 0.01,
                 delay_s: None,
@@ -51,6 +51,34 @@ impl Request {
                 input_step: None,
             },
         }
+    }
+
+    /// Q and R for `model`, as two weights.
+    ///
+    /// # Errors
+    /// Ranges for another number of states or inputs.
+    pub fn weights_for(&self, model: &Model) -> Result<[Weight; 2], DesignError> {
+        let states = self.state_ranges(2 * model.link_count())?;
+        Ok(self.weights.resolved(&states, &self.input_ranges(model)?))
+    }
+
+    /// Largest departures of so many states, SI.
+    pub(super) fn state_ranges(&self, states: usize) -> Result<Vec<f64>, DesignError> {
+        let ranges = self.state_range.diagonal("the range of states", states)?;
+        positive("range", "state", &ranges, states)?;
+        Ok(ranges)
+    }
+
+    /// Largest inputs of the driven joints of `model`, SI: those asked for, else the drives' own.
+    pub(super) fn input_ranges(&self, model: &Model) -> Result<Vec<f64>, DesignError> {
+        let driven = model.driven_joints();
+        let Some(range) = &self.input_range else {
+            let own = driven.iter().map(|&joint| default_limit(model, joint));
+            return Ok(own.collect());
+        };
+        let ranges = range.diagonal("the range of inputs", driven.len())?;
+        positive("range", "input", &ranges, driven.len())?;
+        Ok(ranges)
     }
 }
 

@@ -92,13 +92,13 @@ fn dead_zone(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synth::{Request, Weight};
+    use crate::synth::{CostWeights, Request};
     use std::path::Path;
 
     fn designed(text: &str, q: f64) -> (Model, Design) {
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let request = Request {
-            q: Weight::Scalar(q),
+            weights: CostWeights::equal(q),
             ..Request::standard(&model)
         };
         let design = Design::of(&model, &request).unwrap();

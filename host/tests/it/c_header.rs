@@ -6,7 +6,7 @@ use handstand::Model;
 use handstand::sim::closed_loop::{Controller as _, Measurement};
 use handstand::synth::controllers::FixedPointFeedback;
 use handstand::synth::export::{Provenance, c_header};
-use handstand::synth::{Design, Fixed, Request, Time, Weight};
+use handstand::synth::{CostWeights, Design, Fixed, Request, Time, Weight};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
@@ -43,8 +43,10 @@ fn designed(model: &Model, random: &mut Random) -> Option<(Design, Fixed)> {
     let mut decade = |low, high| 10f64.powf(random.uniform(low, high));
     let diagonal = (0..6).map(|_| decade(-2.0, 2.0)).collect();
     let request = Request {
-        q: Weight::Diagonal(diagonal),
-        r: Weight::Scalar(decade(-2.0, 2.0)),
+        weights: CostWeights::Given {
+            q: Weight::Diagonal(diagonal),
+            r: Weight::Scalar(decade(-2.0, 2.0)),
+        },
         time: Time::Sampled {
             ts_s: decade(-2.3, -1.8),
             delay_s: Some([0.0, 0.01, 0.013, 0.024][random.next() as usize % 4]),

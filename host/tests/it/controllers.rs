@@ -71,7 +71,10 @@ fn robust_has_the_model_s_delay_and_takes_gains_of_a_file() {
         "unaware.json",
         bench.run("gains late.toml --delay 0 --json").stdout,
     );
-    bench.put("aware.json", bench.run("gains late.toml --json").stdout);
+    bench.put(
+        "aware.json",
+        bench.run("gains late.toml --q 100 --json").stdout,
+    );
     let judged = |plan: &str| {
         bench.run(&format!(
             "robust late.toml --plan {plan} --draws 100 --json"

@@ -151,15 +151,15 @@ fn what_cannot_be_designed_ends_in_3_and_says_why() {
     );
     for (line, said) in [
         (
-            "handstand.toml --r skew.csv",
+            "handstand.toml --q 100 --r skew.csv",
             "R is not symmetric: entry (2, 1) is 0, entry (1, 2) is 0.5",
         ),
         (
-            "handstand.toml --r words.csv",
+            "handstand.toml --q 100 --r words.csv",
             "words.csv:2:2: `one` is no number",
         ),
         (
-            "handstand.toml --r ragged.csv",
+            "handstand.toml --q 100 --r ragged.csv",
             "ragged.csv:2:1: 1 numbers where",
         ),
         ("handstand.toml --pose 1,0,0", "joint 1 is passive"),
@@ -247,7 +247,7 @@ fn requests_that_make_no_sense_end_in_2() {
             "Q has 3 values, but there are 6 states",
         ),
         ("handstand.toml --q nan", "Q has an entry of NaN"),
-        ("handstand.toml --r 0", "R is not positive definite"),
+        ("handstand.toml --q 100 --r 0", "R is not positive definite"),
         ("handstand.toml --ts 0", "a sampling time of 0 s"),
         ("handstand.toml --ts nan", "a sampling time of NaN s"),
         ("handstand.toml --delay -0.1", "a delay of -0.1 s"),

@@ -22,6 +22,7 @@ mod examples;
 #[cfg(unix)]
 mod flash;
 mod fuzz;
+mod gain_weights;
 mod gains;
 mod golden;
 mod lab;

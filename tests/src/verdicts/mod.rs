@@ -14,7 +14,7 @@ pub mod table;
 use handstand::Model;
 use handstand::study::{Verification, left_out, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, Request, Weight};
+use handstand::synth::{CostWeights, Design, Request, Weight};
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use robot::Robot;
@@ -85,7 +85,10 @@ fn designed(robot: &Robot) -> Result<(Verification, Table), String> {
     let said = |error: handstand::Error| error.to_string();
     let model = Model::parse(&robot.toml(), Path::new("robot.toml")).map_err(said)?;
     let request = Request {
-        q: Weight::Diagonal(robot.q.to_vec()),
+        weights: CostWeights::Given {
+            q: Weight::Diagonal(robot.q.to_vec()),
+            r: Weight::Scalar(1.0),
+        },
         ..Request::standard(&model)
     };
     let design = Design::of(&model, &request).map_err(|error| error.to_string())?;

@@ -7,7 +7,9 @@ use handstand::fitting::effect_ids;
 use handstand::model::Model;
 use handstand::sim::closed_loop::Velocity;
 use handstand::synth::export::Provenance;
-use handstand::synth::{Format, Readings, Request, Sensors, Time, balanced, upright};
+use handstand::synth::{
+    CostWeights, Format, Readings, Request, Sensors, Time, Weight, balanced, upright,
+};
 use handstand::{Error, Result, output};
 use handstand_shared::raw::Position;
 use std::path::Path;
@@ -139,8 +141,13 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
     };
     let request = Request {
         pose_rad,
-        q: read(&args.q)?.unwrap_or(standard.q),
-        r: read(&args.r)?.unwrap_or(standard.r),
+        weights: match read(&args.q)? {
+            Some(q) => CostWeights::Given {
+                q,
+                r: read(&args.r)?.unwrap_or(Weight::Scalar(1.0)),
+            },
+            None => standard.weights,
+        },
         time,
         sensors: args.lqg.then_some(sensors),
         readings: Readings {

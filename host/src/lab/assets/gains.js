@@ -7,14 +7,14 @@ import { say, send } from "./lab.js";
 const base = `/s/${document.body.dataset.session}`;
 const $ = (id) => document.getElementById(id);
 const group = new ChartGroup($("response"));
-const shown = { q: (v) => v, r: (v) => v, ts_s: (v) => v, delay_s: (v) => v };
-const logs = { q: true, r: true, ts_s: true };
+const sliders = ["states", "speeds", "ts_s", "delay_s"];
+const logs = { states: true, speeds: true, ts_s: true };
 const value = (name) => {
   const raw = Number($(name).value);
   return logs[name] ? Number((10 ** raw).toPrecision(2)) : Number(raw.toFixed(4));
 };
 const asked = () => ({
-  q: value("q"), r: value("r"), ts_s: value("ts_s"),
+  states: value("states"), speeds: value("speeds"), ts_s: value("ts_s"),
   delay_s: $("own-delay").checked ? null : value("delay_s"),
 });
 let poles = [], wanted = false, busy = false;
@@ -119,9 +119,9 @@ const ask = async () => {
   wanted = true;
   clearTimeout(rest);
   rest = setTimeout(verify, 700);
-  for (const name of Object.keys(shown)) $(`${name}-shown`).textContent = value(name);
+  for (const name of sliders) $(`${name}-shown`).textContent = value(name);
   const query = asked();
-  const text = new URLSearchParams({ q: query.q, r: query.r, ts_s: query.ts_s,
+  const text = new URLSearchParams({ states: query.states, speeds: query.speeds, ts_s: query.ts_s,
     ...(query.delay_s === null ? {} : { delay_s: query.delay_s }) });
   for (const link of document.querySelectorAll("[data-file]")) link.href =
     `${base}/gains-file/${link.dataset.file}?${text}`;
@@ -133,7 +133,7 @@ const ask = async () => {
   }
   busy = false;
 };
-for (const name of Object.keys(shown)) $(name).addEventListener("input", ask);
+for (const name of sliders) $(name).addEventListener("input", ask);
 $("own-delay").addEventListener("change", () => { $("delay_s").disabled = $("own-delay").checked;
   ask(); });
 onLook(drawPoles);

@@ -1,4 +1,4 @@
-//! Gains: weights, sampling time and delay as sliders.
+//! Gains: weights about those by the ranges, sampling time and delay as sliders.
 
 use super::{frame, lacking};
 use crate::lab::reply::LabError;
@@ -7,8 +7,8 @@ use maud::{Markup, html};
 
 /// A slider: name, title, lowest, highest and first place; powers of ten but for the delay.
 const SLIDERS: [(&str, &str, f64, f64, f64); 4] = [
-    ("q", "Q, weight of the states", -1.0, 5.0, 2.0),
-    ("r", "R, weight of the inputs", -3.0, 4.0, 0.0),
+    ("states", "States against inputs", -4.0, 4.0, 0.0),
+    ("speeds", "Speeds against angles", -3.0, 3.0, 0.0),
     ("ts_s", "Sampling time, s", -3.0, -1.0, -2.0),
     ("delay_s", "Delay of the inputs, s", 0.0, 0.06, 0.0),
 ];
@@ -51,7 +51,9 @@ fn shown() -> Markup {
             h1 { "Gains that hold it upright" }
             p.lead { "The linear-quadratic regulator of the model in force. The response is \
                       simulated with every effect that the model has learned, from a lean of 20 \
-                      mrad (1.1 deg)." }
+                      mrad (1.1 deg). At 1 each state and input weighs one over the square of its \
+                      largest departure (Bryson's rule: 0.5 rad, 10 rad/s, the drive's own limit); \
+                      the first two sliders multiply that." }
             @for (name, title, low, high, at) in SLIDERS {
                 div.wide-slider {
                     label for=(name) { (title) }

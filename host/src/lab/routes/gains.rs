@@ -11,7 +11,7 @@ use crate::output::number::hex;
 use crate::report::{margins_json, verification_text};
 use crate::study::{left_out, response, verify};
 use crate::synth::export::{self, Provenance};
-use crate::synth::{Design, LoopFigures, Request, Time, Weight, rows};
+use crate::synth::{CostWeights, Design, LoopFigures, Request, Time, rows};
 use axum::Json;
 use axum::extract::{Path, Query, State};
 use serde::Deserialize;
@@ -33,10 +33,10 @@ pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u3
 /// What is asked of the design.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub(super) struct GainsAsked {
-    /// Weight of every state.
-    q: f64,
-    /// Weight of every input.
-    r: f64,
+    /// Weight of the states, times that by their ranges.
+    states: f64,
+    /// Weight of the speeds, times that again.
+    speeds: f64,
     /// Sampling time, s.
     ts_s: f64,
     /// Delay of the inputs, s; the model's own without.
@@ -46,15 +46,20 @@ pub(super) struct GainsAsked {
 impl GainsAsked {
     fn request(self, model: &Model) -> Result<Request> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
-        if ![self.q, self.r, self.ts_s].into_iter().all(positive) {
+        if ![self.states, self.speeds, self.ts_s]
+            .into_iter()
+            .all(positive)
+        {
             return Err(Error::usage(
                 "a weight or the sampling time is not above 0",
                 "raise it",
             ));
         }
         Ok(Request {
-            q: Weight::Scalar(self.q),
-            r: Weight::Scalar(self.r),
+            weights: CostWeights::ByRange {
+                states: self.states,
+                speeds: self.speeds,
+            },
             time: Time::Sampled {
                 ts_s: self.ts_s,
                 delay_s: self.delay_s,
@@ -63,10 +68,14 @@ impl GainsAsked {
         })
     }
 
-    fn options(self) -> String {
+    fn options(self, model: &Model) -> Result<String> {
         let delay = self.delay_s.map(|delay| format!(" --delay {delay}"));
-        let GainsAsked { q, r, ts_s, .. } = self;
-        format!(" --q {q} --r {r} --ts {ts_s}{}", delay.unwrap_or_default())
+        let [q, r] = self.request(model)?.weights_for(model)?;
+        Ok(format!(
+            " --q {q} --r {r} --ts {}{}",
+            self.ts_s,
+            delay.unwrap_or_default()
+        ))
     }
 }
 
@@ -91,7 +100,7 @@ fn model(session: &LabSession, asked: GainsAsked) -> Result<(Model, Provenance),
     let made = Provenance {
         model: format!("model-{}.toml", saved.current),
         sha256: hex(Sha256::digest(toml)),
-        command: saved.gains_command() + &asked.options(),
+        command: saved.gains_command() + &asked.options(&model)?,
     };
     Ok((model, made))
 }

@@ -7,7 +7,9 @@ use crate::model::EffectInstance;
 use crate::synth::controllers::{
     DEFAULT, DESIGNS, DesignModel, MASS_ERROR, MultiModel, WEIGHT, design,
 };
-use crate::synth::{Design, Format, Readings, Request, Time, Weight, dlqr, upright, zoh};
+use crate::synth::{
+    CostWeights, Design, Format, Readings, Request, Time, Weight, dlqr, upright, zoh,
+};
 use nalgebra::DMatrix;
 use std::path::Path;
 
@@ -216,8 +218,7 @@ fn verified(effects: &[(&str, usize, &[f64])]) -> Verification {
         }));
     let request = Request {
         pose_rad: upright(&model),
-        q: Weight::Scalar(100.0),
-        r: Weight::Scalar(1.0),
+        weights: CostWeights::PAPER,
         time: Time::Sampled {
             ts_s: 0.01,
             delay_s: None,

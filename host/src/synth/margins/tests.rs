@@ -1,6 +1,6 @@
 use super::{DesignMargins, LoopMargin, Margins, OpenLoop, design_margins};
 use crate::model::Model;
-use crate::synth::{Design, Request, Sensors, Time, Weight};
+use crate::synth::{CostWeights, Design, Request, Sensors, Time, Weight};
 use nalgebra::DMatrix;
 use serde_json::Value;
 use std::path::Path;
@@ -143,7 +143,10 @@ fn a_loop_that_is_not_stable_has_none() {
 fn of_the_paper_s_robot(change: impl Fn(&mut Request)) -> DesignMargins {
     let text = include_str!("../../../models/handstand.toml");
     let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
-    let mut request = Request::standard(&model);
+    let mut request = Request {
+        weights: CostWeights::PAPER,
+        ..Request::standard(&model)
+    };
     change(&mut request);
     let design = Design::of(&model, &request).unwrap();
     design_margins(&model, &design).unwrap().unwrap()
@@ -167,7 +170,9 @@ fn the_paper_s_weights_are_fragile_and_others_are_not() {
     near(paper.inputs.disk.phase_rad().to_degrees(), 13.11, 0.01);
 
     let spared = of_the_paper_s_robot(|request| {
-        request.q = Weight::Diagonal(vec![1.0, 1.0, 1.0, 0.01, 0.01, 0.01]);
+        let q = Weight::Diagonal(vec![1.0, 1.0, 1.0, 0.01, 0.01, 0.01]);
+        let r = Weight::Scalar(1.0);
+        request.weights = CostWeights::Given { q, r };
     });
     near(spared.inputs.common.gain[0], 0.496, 5e-4);
     near(spared.inputs.common.gain[1], 2.67, 5e-3);

@@ -16,7 +16,7 @@ fn models() -> Vec<String> {
 }
 
 fn design(server: &LabServer) -> Response {
-    let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
+    let asked = json!({ "states": 1.0, "speeds": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
     server.post("/s/1/gains", &asked)
 }
 
@@ -35,7 +35,7 @@ fn every_driven_model_gets_gains_and_the_others_are_told_what_they_lack() {
             continue;
         }
         assert_eq!(answer.status, 200, "{model}: {}", answer.text());
-        let told = bench.run(&format!("gains {model} --q 100 --r 1 --ts 0.01 --json"));
+        let told = bench.run(&format!("gains {model} --ts 0.01 --json"));
         assert_eq!(answer.json()["k"], told.json()["k"], "{model}");
         designed += 1;
     }
@@ -86,9 +86,9 @@ fn the_page_says_what_the_command_says() {
         text.replace("torque_nm = 0.03", "torque_nm = 0.9"),
     );
     let server = bench.lab("arm.toml");
-    let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
+    let asked = json!({ "states": 1.0, "speeds": 1.0, "ts_s": 0.01, "delay_s": Value::Null });
     let said = server.post("/s/1/verified", &asked).json();
-    let told = bench.run("gains arm.toml --q 100 --r 1 --ts 0.01").stdout;
+    let told = bench.run("gains arm.toml --ts 0.01").stdout;
     let lines = said["lines"].as_array().unwrap();
     for line in lines {
         assert!(told.contains(line.as_str().unwrap()), "{line}:\n{told}");

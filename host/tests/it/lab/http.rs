@@ -232,9 +232,13 @@ fn gains_are_those_of_the_command_line() {
         include_str!("../../../models/handstand.toml"),
     );
     let server = bench.lab("handstand.toml");
-    let asked = json!({ "q": 100.0, "r": 1.0, "ts_s": 0.01, "delay_s": null });
+    let asked = json!({ "states": 1.0, "speeds": 0.5, "ts_s": 0.01, "delay_s": null });
     let made = server.post("/s/1/gains", &asked).json();
-    let told = bench.run("gains handstand.toml --json").json();
+    let command = made["command"].as_str().unwrap();
+    let options = command.split_once("--q").expect("weights").1;
+    let told = bench.run(&format!("gains handstand.toml --json --q{options}"));
+    let told = told.json();
+    assert_eq!(told["q"][4][4], 0.005);
     assert_eq!(made["k"], told["k"]);
     assert_eq!(made["poles"], told["loop_poles"]);
     assert_eq!(
@@ -242,13 +246,16 @@ fn gains_are_those_of_the_command_line() {
         told["fixed"]["spectral_radius_fixed"]
     );
     let header = server
-        .get("/s/1/gains-file/gains.h?q=100&r=1&ts_s=0.01")
+        .get("/s/1/gains-file/gains.h?states=1&speeds=1&ts_s=0.01")
         .text();
     assert!(
         header.contains("#define") || header.contains("int16_t"),
         "{header}"
     );
-    let unsolvable = server.post("/s/1/gains", &json!({ "q": -1.0, "r": 1.0, "ts_s": 0.01 }));
+    let unsolvable = server.post(
+        "/s/1/gains",
+        &json!({ "states": -1.0, "speeds": 1.0, "ts_s": 0.01 }),
+    );
     assert_eq!(unsolvable.status, 422);
 }
 
