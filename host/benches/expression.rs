@@ -6,7 +6,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
-use handstand::log::Motion;
+use handstand::motion::Motion;
 use handstand::sim::{Memory, Plant, Start, predict};
 use std::f64::consts::TAU;
 use std::hint::black_box;

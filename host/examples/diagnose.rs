@@ -6,7 +6,8 @@
 
 use handstand::challenge::{Hidden, generate};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, diagnose};
-use handstand::log::{LogRequest, Motion, read};
+use handstand::log::{LogRequest, read};
+use handstand::motion::Motion;
 use handstand::report::diagnosis_text;
 use handstand::{Error, Model, Result};
 use std::path::Path;

@@ -20,6 +20,7 @@ pub mod lab;
 pub mod link;
 pub mod log;
 pub mod model;
+pub mod motion;
 pub mod output;
 pub mod report;
 pub mod sim;

@@ -8,7 +8,7 @@ use crate::value::{framed, plain};
 use crate::work;
 use handstand::compare::{ModelRun, text};
 use handstand::fitting::{FitData, Horizon};
-use handstand::log::Split;
+use handstand::motion::Split;
 use handstand::report::{Report, ReportProvenance, html, json};
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 #[derive(Debug, Clone)]
 pub struct Comparison {
     report: Report,
-    motions: Vec<handstand::log::Motion>,
+    motions: Vec<handstand::motion::Motion>,
     /// `[motion][signal][sample]`.
     predicted: Vec<Vec<Vec<f64>>>,
     /// `[signal][motion][sample]`.

@@ -9,7 +9,7 @@ use handstand::compare::compare_all;
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, FittedEffect, LogDiagnosis, diagnose_logs};
 use handstand::fitting::{Horizon, Progress, effect_ids, free_parameters};
-use handstand::log::Split;
+use handstand::motion::Split;
 use handstand::report::{Report, ReportProvenance, diagnosis_json, diagnosis_text, html};
 use pyo3::prelude::*;
 
@@ -131,7 +131,7 @@ pub fn found(
                 horizon.check(&model.inner, training.iter().chain(&held_out))?;
             }
             let split = Split::told_apart(training, held_out)?;
-            let split = handstand::log::split(split.training, split.held_out);
+            let split = handstand::motion::split(split.training, split.held_out);
             let (training, held_out) = (split.training.clone(), split.held_out.clone());
             let model = &model.inner;
             LogDiagnosis {

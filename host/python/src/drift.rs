@@ -8,7 +8,7 @@ use crate::refit::names;
 use crate::value::plain;
 use crate::work;
 use handstand::fitting::{DriftSession, Horizon, free_parameters};
-use handstand::log::Split;
+use handstand::motion::Split;
 use pyo3::prelude::*;
 
 /// Tests whether a model's values differ between sessions, or servos.

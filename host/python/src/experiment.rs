@@ -13,7 +13,7 @@ use handstand::experiment::{
     Criterion, ExperimentLimits, ExperimentProposal, ProposeOptions, propose, propose_values,
 };
 use handstand::fitting::{Horizon, effect_named, free_parameters};
-use handstand::log::Split;
+use handstand::motion::Split;
 use pyo3::prelude::*;
 use serde_json::json;
 
@@ -179,7 +179,10 @@ pub fn next(
 }
 
 /// The logs as they were given, and all their motions.
-fn read_all(learned: Learned, model: &Model) -> PyResult<(Learned, Vec<handstand::log::Motion>)> {
+fn read_all(
+    learned: Learned,
+    model: &Model,
+) -> PyResult<(Learned, Vec<handstand::motion::Motion>)> {
     let together = |split: &Split| [split.training.as_slice(), &split.held_out].concat();
     Ok(match learned {
         Learned::Files(set) => {

@@ -4,7 +4,8 @@ use crate::errors::{exception, usage};
 use crate::model::Model;
 use crate::motion::Motion;
 use handstand::fitting::Horizon;
-use handstand::log::{LogRequest, LogSet, Split, read};
+use handstand::log::{LogRequest, LogSet, read};
+use handstand::motion::Split;
 use pyo3::exceptions::PyDeprecationWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -15,7 +16,7 @@ pub enum Given {
     /// Files, as the command line names them.
     Files(Vec<LogRequest>),
     /// Motions, those of files read as the model declares their columns.
-    Motions(Vec<handstand::log::Motion>),
+    Motions(Vec<handstand::motion::Motion>),
 }
 
 /// A log's motions, as the model declares its columns.
@@ -38,7 +39,7 @@ pub fn read_log(path: &Bound<'_, PyAny>, model: &Bound<'_, Model>) -> PyResult<V
 }
 
 /// The motions of a file or a DataFrame.
-fn motions_of(log: &Bound<'_, PyAny>, model: &Model) -> PyResult<Vec<handstand::log::Motion>> {
+fn motions_of(log: &Bound<'_, PyAny>, model: &Model) -> PyResult<Vec<handstand::motion::Motion>> {
     if !is_frame(log)? {
         return read(&[request(log)?], &model.inner.log).map_err(exception);
     }
@@ -163,7 +164,7 @@ pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
 }
 
 /// Refuses a motion of another rig.
-pub fn fits(motion: &handstand::log::Motion, model: &Model) -> PyResult<()> {
+pub fn fits(motion: &handstand::motion::Motion, model: &Model) -> PyResult<()> {
     let (joints, links) = (motion.position_rad.len(), model.inner.link_count());
     if joints != links {
         return Err(usage(
@@ -195,7 +196,7 @@ pub fn fits(motion: &handstand::log::Motion, model: &Model) -> PyResult<()> {
 
 impl Given {
     /// The motions.
-    pub fn motions(self, model: &Model) -> PyResult<Vec<handstand::log::Motion>> {
+    pub fn motions(self, model: &Model) -> PyResult<Vec<handstand::motion::Motion>> {
         match self {
             Given::Files(files) => read(&files, &model.inner.log).map_err(exception),
             Given::Motions(motions) => Ok(motions),
@@ -235,7 +236,10 @@ pub enum Learned {
     /// Files alone, which are also checked for wrong signs, zeros and units.
     Files(LogSet),
     /// Motions to learn from, and those held out.
-    Motions(Vec<handstand::log::Motion>, Vec<handstand::log::Motion>),
+    Motions(
+        Vec<handstand::motion::Motion>,
+        Vec<handstand::motion::Motion>,
+    ),
 }
 
 impl Learned {
@@ -254,7 +258,7 @@ impl Learned {
 pub fn check<'a>(
     horizon: Option<Horizon>,
     model: &Model,
-    motions: impl IntoIterator<Item = &'a handstand::log::Motion>,
+    motions: impl IntoIterator<Item = &'a handstand::motion::Motion>,
 ) -> PyResult<()> {
     let checked = horizon.map(|horizon| horizon.check(&model.inner, motions));
     checked.transpose().map(drop).map_err(exception)

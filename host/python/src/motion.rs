@@ -3,7 +3,8 @@
 use crate::arrays::{matrix, numbers, per_joint, rows, rows_or_none};
 use crate::errors::usage;
 use crate::value::counted;
-use handstand::log::{LEAST_ROWS, MotionSource};
+use handstand::log::LEAST_ROWS;
+use handstand::motion::MotionSource;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -41,7 +42,7 @@ type Object<'py> = Bound<'py, PyAny>;
 #[pyclass(frozen, module = "handstand")]
 #[derive(Debug, Clone)]
 pub struct Motion {
-    pub inner: handstand::log::Motion,
+    pub inner: handstand::motion::Motion,
 }
 
 #[pymethods]
@@ -76,7 +77,7 @@ impl Motion {
         let joints = position_rad.len();
         let (path, sha256, first, last) =
             _source.unwrap_or((name.into(), String::new(), 1, samples));
-        let inner = handstand::log::Motion {
+        let inner = handstand::motion::Motion {
             name: name.to_string(),
             source: MotionSource {
                 path,
@@ -208,20 +209,20 @@ impl Motion {
 
 impl Motion {
     /// A motion as the library has it, with a place for every joint's rate.
-    pub fn read(mut inner: handstand::log::Motion) -> Motion {
+    pub fn read(mut inner: handstand::motion::Motion) -> Motion {
         inner.rate_rad_s.resize(inner.position_rad.len(), None);
         Motion { inner }
     }
 
     /// A motion whose arrays belong together.
-    pub fn of(inner: handstand::log::Motion) -> PyResult<Motion> {
+    pub fn of(inner: handstand::motion::Motion) -> PyResult<Motion> {
         is_whole(&inner)?;
         Ok(Motion { inner })
     }
 }
 
 /// Refuses arrays that make no motion.
-fn is_whole(motion: &handstand::log::Motion) -> PyResult<()> {
+fn is_whole(motion: &handstand::motion::Motion) -> PyResult<()> {
     let samples = motion.time_s.len();
     if samples < LEAST_ROWS {
         return Err(usage(

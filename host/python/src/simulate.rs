@@ -6,8 +6,8 @@ use crate::logs::fits;
 use crate::model::Model;
 use crate::motion::Motion;
 use crate::work;
-use handstand::log::MotionSource;
 use handstand::model::{MeasuredSignal, hanging};
+use handstand::motion::MotionSource;
 use handstand::sim::{Memory, Plant, Start, predict};
 use pyo3::prelude::*;
 
@@ -50,7 +50,7 @@ pub fn simulate(
     let joints = model.inner.link_count();
     let time_s = numbers("time_s", time_s)?;
     let samples = time_s.len();
-    let motion = Motion::of(handstand::log::Motion {
+    let motion = Motion::of(handstand::motion::Motion {
         name: "simulated".to_string(),
         source: MotionSource {
             path: "simulated".into(),

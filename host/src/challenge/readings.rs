@@ -217,7 +217,7 @@ fn pendulum_toml(link: [f64; 3], friction: [f64; 2], secrets: &[HiddenEffect]) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::Motion;
+    use crate::motion::Motion;
 
     fn angles() -> Vec<f64> {
         (0..4000).map(|k| 1e-3 * f64::from(k)).collect()

@@ -23,7 +23,8 @@
 
 use super::page::{self, PageFile};
 use super::{ExitStatus, Talk, input};
-use handstand::log::{LogFinding, LogRequest, Split, read_with_findings};
+use handstand::log::{LogFinding, LogRequest, read_with_findings};
+use handstand::motion::Split;
 use handstand::report::{Report, file_names, html, json};
 use handstand::{Result, compare};
 use std::path::PathBuf;

@@ -33,7 +33,8 @@ use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, com
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, LogDiagnosis, Verdict, diagnose_logs};
 use handstand::fitting::{Horizon, Progress, effect_ids};
-use handstand::log::{LogRequest, LogSet, Motion, read};
+use handstand::log::{LogRequest, LogSet, read};
+use handstand::motion::Motion;
 use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Model, Result};

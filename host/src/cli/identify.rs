@@ -16,7 +16,8 @@
 
 use super::servo_columns::{ChosenColumns, ServoColumns};
 use super::{ExitStatus, Talk, input};
-use handstand::log::{LogRequest, Motion};
+use handstand::log::LogRequest;
+use handstand::motion::Motion;
 use handstand::sysid::{
     IntervalEstimate, Record, Structure, TriedStructure, dynamics, record, sampling_period_s,
     select, structures, try_all,

@@ -4,10 +4,9 @@ use super::Talk;
 use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
 use handstand::error::Place;
 use handstand::fitting::{Horizon, free_parameters};
-use handstand::log::{
-    LogFinding, LogFormat, LogRequest, LogSet, Motion, Split, read_with_findings,
-};
+use handstand::log::{LogFinding, LogFormat, LogRequest, LogSet, read_with_findings};
 use handstand::model::{LogColumns, ParameterPath};
+use handstand::motion::{Motion, Split};
 use handstand::output::vacant;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};

@@ -1,7 +1,7 @@
 //! Pages: what they were made from, and writing them.
 
 use super::Talk;
-use handstand::log::Split;
+use handstand::motion::Split;
 use handstand::report::{HashedModel, ReportProvenance, file_name, file_names};
 use handstand::{Error, Result, output};
 use std::path::{Path, PathBuf};

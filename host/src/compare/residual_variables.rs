@@ -1,8 +1,8 @@
 //! What the residual of a joint can be drawn over: speed, angle, load, time, supply.
 
 use super::sample_features::{load_nm, speed_rad_s};
-use crate::log::Motion;
 use crate::model::{Drive, MeasuredSignal, Model};
+use crate::motion::Motion;
 
 /// A quantity at every sample, the motions end to end.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,8 +6,8 @@ use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
 use super::result::{Comparison, HorizonError, SignalError, Trace};
 use crate::fitting::{FitData, Horizon, fit_start_states};
-use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model};
+use crate::motion::Motion;
 
 /// Times without correction at which the error is told, s.
 const LADDER_S: [f64; 4] = [0.1, 0.3, 1.0, 3.0];

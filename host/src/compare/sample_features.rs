@@ -3,8 +3,8 @@
 
 use super::order::{quantile, ranks};
 use crate::dynamics::EquationsOfMotion;
-use crate::log::Motion;
 use crate::model::{Angles, Drive, MeasuredSignal, Model};
+use crate::motion::Motion;
 
 /// Half the time over which speed is estimated, s.
 const SPEED_REACH_S: f64 = 0.025;

@@ -2,8 +2,8 @@
 
 use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site};
 use crate::fitting::Candidate;
-use crate::log::Motion;
 use crate::model::{Drive, MeasuredSignal, Model, effect_on};
+use crate::motion::Motion;
 
 /// Every effect of the library and of the model's file at every place where it can act on this
 /// model and be seen in these motions, except those the model holds and those named in `without`;

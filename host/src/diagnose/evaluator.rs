@@ -16,8 +16,8 @@ use crate::fitting::{
     Candidate, Fit, FitData, FitOptions, Horizon, PredictionChange, Sizes, changes, coarsened,
     is_followed, search_horizons,
 };
-use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
+use crate::motion::Motion;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -6,7 +6,7 @@ use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::verdict::FAR_OFF;
 use crate::fitting::{FitData, FitOptions, Horizon};
-use crate::log::Motion;
+use crate::motion::Motion;
 use rayon::prelude::*;
 
 /// Longest windows to judge over, s, beside whole motions.

@@ -8,8 +8,9 @@ use super::words::{HELD_OUT, LOGS, MODEL};
 use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::Result;
 use crate::fitting::Progress;
-use crate::log::{LogFinding, LogRequest, LogSet, Severity, Split, split};
+use crate::log::{LogFinding, LogRequest, LogSet, Severity};
 use crate::model::Model;
+use crate::motion::{Split, split};
 use std::path::Path;
 
 /// A diagnosis, and the motions it was made from.

@@ -17,8 +17,8 @@ use super::search::Found;
 use super::stability::folds;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, Progress, stated_from};
-use crate::log::Motion;
 use crate::model::Model;
+use crate::motion::Motion;
 
 /// A placebo that gains this share of what the chosen set does on the short windows, both in
 /// factors of the error, is evaluated: half of the share that would make it rank.

@@ -8,8 +8,8 @@ use crate::error::{Error, Result};
 use crate::experiment::excite::{
     EXCITATION_KINDS, Excitation, ExcitationKind, ExcitePlan, JointLimits, excite,
 };
-use crate::log::Motion;
 use crate::model::Model;
+use crate::motion::Motion;
 use rayon::prelude::*;
 
 /// Shares of the ranges that motions use. The limits are for what the rig does: goals stay inside.

@@ -5,8 +5,8 @@ use super::condition::Condition;
 use super::limits::ExperimentLimits;
 use crate::dynamics::EquationsOfMotion;
 use crate::experiment::excite::Excitation;
-use crate::log::Motion;
 use crate::model::{Drive, Model, hanging};
+use crate::motion::Motion;
 use crate::sim::{Memory, Plant, Start, predict};
 
 /// Stiffness and damping of the regulator per inertia: 1/s^2 and 1/s.

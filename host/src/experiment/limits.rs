@@ -1,8 +1,8 @@
 //! Within which angles, speeds, torques and time an experiment must stay.
 
 use crate::error::{Error, Result};
-use crate::log::Motion;
 use crate::model::{Drive, MeasuredSignal, Model};
+use crate::motion::Motion;
 use std::f64::consts::PI;
 
 /// Samples over which a speed is taken from readings.

@@ -3,7 +3,7 @@
 use super::condition::Condition;
 use crate::diagnose::{FittedEffect, Verdict};
 use crate::experiment::excite::ExcitationKind;
-use crate::log::Motion;
+use crate::motion::Motion;
 use serde::Serialize;
 
 /// An explanation by name.

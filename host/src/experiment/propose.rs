@@ -13,8 +13,8 @@ use super::tighten::{Criterion, tightened};
 use crate::diagnose::{Diagnosis, Verdict, how_to_measure};
 use crate::error::Result;
 use crate::fitting::{FitData, Horizon};
-use crate::log::Motion;
 use crate::model::{Model, ParameterPath};
+use crate::motion::Motion;
 use rayon::prelude::*;
 
 /// Standard errors from which a diagnosis tells two explanations apart: an explanation is replaced

@@ -6,8 +6,8 @@ use super::horizon::Horizon;
 use super::progress::Progress;
 use super::refit::{MOST_LEFT, NotAdded, Refitted, Undetermined, refit_from};
 use crate::error::Result;
-use crate::log::{Motion, Split};
 use crate::model::{Model, ParameterPath, edit};
+use crate::motion::{Motion, Split};
 use crate::output::number::mrad;
 use std::path::Path;
 

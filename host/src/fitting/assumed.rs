@@ -8,8 +8,8 @@
 use super::horizon::Window;
 use super::node::Node;
 use super::residual::{weighted, worst};
-use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model, hanging};
+use crate::motion::Motion;
 use crate::sim::{Memory, Plant, predict};
 use std::f64::consts::TAU;
 

@@ -5,7 +5,7 @@
 
 use super::horizon::{Horizon, Window};
 use super::node::{REACH_S, StartDoubt};
-use crate::log::Motion;
+use crate::motion::Motion;
 
 /// A start that the samples around it contradict by more than so many standard deviations is moved
 /// to where they do so by fewer than that.

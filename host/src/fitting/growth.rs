@@ -8,8 +8,8 @@
 use super::assumed::AssumedStates;
 use super::horizon::{Horizon, Window};
 use super::node::Node;
-use crate::log::Motion;
 use crate::model::Model;
+use crate::motion::Motion;
 use crate::sim::{Memory, Plant, Start, predict};
 use nalgebra::DMatrix;
 
@@ -129,7 +129,7 @@ fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &Start) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::MotionSource;
+    use crate::motion::MotionSource;
     use std::path::Path;
 
     /// A free pendulum at these angles, read at 100 Hz without noise.

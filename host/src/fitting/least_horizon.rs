@@ -3,8 +3,8 @@
 
 use super::horizon::Horizon;
 use crate::error::Error;
-use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model};
+use crate::motion::Motion;
 use crate::output::number::given;
 use crate::sim::{HiddenQuantity, Plant};
 

@@ -3,8 +3,8 @@
 
 use super::*;
 use crate::effects::named;
-use crate::log::{Motion, Split};
 use crate::model::{ColumnMean, EffectInstance, MeasuredSignal, Model, ParameterPath};
+use crate::motion::{Motion, Split};
 use crate::sim::{Memory, Plant, Start, predict};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

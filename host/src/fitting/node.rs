@@ -3,7 +3,7 @@
 
 use super::assumed::{AssumedJoint, AssumedStates};
 use super::horizon::Window;
-use crate::log::Motion;
+use crate::motion::Motion;
 use crate::sim::{HiddenQuantity, HiddenUnknown, Plant, Start};
 use nalgebra::{DVector, Matrix3, Vector3};
 

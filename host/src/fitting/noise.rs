@@ -1,6 +1,6 @@
 //! How exactly a motion was measured: the floor below which no model can be judged.
 
-use crate::log::Motion;
+use crate::motion::Motion;
 
 /// How exactly something was measured, rad, m or rad/s.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,8 @@ use super::*;
 use crate::compare::{compare, text};
 use crate::diagnose::candidates;
 use crate::effects::named;
-use crate::log::{Motion, Split};
 use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
+use crate::motion::{Motion, Split};
 use std::path::Path;
 
 const COARSE: &str = "position = { column = \"q\", unit = \"rad\", resolution_rad = 0.02 }";

@@ -19,9 +19,9 @@ use super::told_values::{ToldValues, told_values};
 use super::ways::{best_fit, stated};
 use super::windows::MotionWindow;
 use crate::fitting::Candidate;
-use crate::log::Split;
 use crate::model::edit::FitRecord;
 use crate::model::{EffectInstance, MeasuredSignal, Model, ParameterPath};
+use crate::motion::Split;
 use std::cell::Cell;
 
 /// A refitted model.

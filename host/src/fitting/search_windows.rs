@@ -3,7 +3,7 @@
 use super::data::FitData;
 use super::fit::Fit;
 use super::horizon::Horizon;
-use crate::log::Motion;
+use crate::motion::Motion;
 
 /// Windows to search on, s: the first that the base model follows.
 const SEARCH_S: [f64; 3] = [1.0, 0.5, 0.25];

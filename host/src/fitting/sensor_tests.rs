@@ -4,8 +4,8 @@ use super::Horizon;
 use super::log_tests::{ANGLE, even, pendulum, swing};
 use crate::compare::compare;
 use crate::effects::named;
-use crate::log::Motion;
 use crate::model::{EffectInstance, Model};
+use crate::motion::Motion;
 
 fn sensing(effects: [(&str, f64); 2]) -> Model {
     let mut model = pendulum(ANGLE, 0.006);

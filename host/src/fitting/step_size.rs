@@ -7,8 +7,8 @@ use super::fit::{Fit, FitOptions};
 use super::node::Node;
 use super::residual::{Residuals, residuals};
 use super::solve::fit;
-use crate::log::Motion;
 use crate::model::{Model, STEP_S};
+use crate::motion::Motion;
 
 /// Change of a prediction, in standard deviations of a reading, that no verdict hangs on.
 const NEGLIGIBLE: f64 = 0.03;

@@ -2,16 +2,12 @@
 
 use super::LogFinding;
 use super::folder::expanded;
-use super::holdout::Split;
 use super::read::read_with_findings;
 use super::request::LogRequest;
 use super::same_rows::SizedRequest;
 use crate::error::{Error, Result};
 use crate::model::LogColumns;
-
-/// What to do about rows that are fitted and held out.
-pub(super) const NAME_ONCE: &str = "name each row once, a range includes its end: what was learned \
-                                    from proves nothing";
+use crate::motion::{NAME_ONCE, Split};
 
 /// Logs to learn from and logs to judge by, which share no row.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

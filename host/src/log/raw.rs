@@ -217,7 +217,7 @@ impl CsvRows<'_> {
     }
 }
 
-fn of_bam(motion: super::Motion, bench: Option<BenchFigures>) -> RawLog {
+fn of_bam(motion: crate::motion::Motion, bench: Option<BenchFigures>) -> RawLog {
     let mut log = RawLog {
         is_si: true,
         bench,

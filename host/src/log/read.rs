@@ -7,9 +7,10 @@ use super::request::LogRequest;
 use super::row::{Before, LogRow};
 use super::short::ShortMotions;
 use super::visit::{FileFacts, visit};
-use super::{LogFinding, Motion, MotionSource, bam};
+use super::{LogFinding, bam};
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
+use crate::motion::{Motion, MotionSource};
 use std::collections::HashMap;
 
 /// Fewest samples a motion may have.

@@ -77,7 +77,7 @@ impl LogRow {
     }
 
     /// Sample `index` of a motion that came from no CSV.
-    pub(super) fn of(motion: &super::Motion, index: usize) -> LogRow {
+    pub(super) fn of(motion: &crate::motion::Motion, index: usize) -> LogRow {
         let joints = motion.position_rad.len();
         let at = |series: &Option<Vec<f64>>| series.as_ref().map(|values| values[index]);
         LogRow {

@@ -1,7 +1,7 @@
 //! Writes a motion as a CSV log.
 
-use super::Motion;
 use crate::model::{Column, ColumnMean, LogColumns};
+use crate::motion::Motion;
 
 /// The text of a log that [`super::read`] reads back to the same motion under the same columns.
 ///

@@ -50,7 +50,7 @@ pub use verification::verification_text;
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;
-use crate::log::{Motion, Split};
+use crate::motion::{Motion, Split};
 use crate::output::number::hex;
 use crate::output::plot::Tone;
 use serde::Serialize;

@@ -6,8 +6,8 @@ mod readings;
 use super::hidden::HiddenUnknown;
 use super::joint_plan::JointPlan;
 use crate::effects::{BaseSpring, CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
-use crate::log::Motion;
 use crate::model::{Angles, MeasuredSignal, Model};
+use crate::motion::Motion;
 pub(super) use rate_reading::RateReading;
 
 /// A model compiled for one motion.

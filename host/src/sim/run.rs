@@ -9,8 +9,8 @@ use super::plant::Plant;
 use super::rows::{Few, Many, Rows};
 use super::sensor_state::SensorState;
 use super::stepper::Stepper;
-use crate::log::Motion;
 use crate::model::Drive;
+use crate::motion::Motion;
 use std::ops::Range;
 
 /// State at the first sample of a stretch: relative angles (joint 1 from hanging), rad, and speeds,

@@ -1,7 +1,7 @@
 //! Motions in short blocks of time: means of command and output, for static maps.
 
 use super::record::OutputQuantity;
-use crate::log::Motion;
+use crate::motion::Motion;
 
 /// Most the input may change over a block and the one before, as a share of its whole range: more
 /// is a step, and what follows one is not rest.
@@ -78,7 +78,7 @@ fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::MotionSource;
+    use crate::motion::MotionSource;
 
     #[test]
     fn blocks_after_a_step_are_left_out() {

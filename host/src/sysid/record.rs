@@ -1,7 +1,7 @@
 //! Input and output at equal steps of time: what a discrete-time model is fitted to.
 
 use crate::error::{Error, Place, Reason, Result};
-use crate::log::Motion;
+use crate::motion::Motion;
 use std::borrow::Cow;
 use std::ops::Range;
 

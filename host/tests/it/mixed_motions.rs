@@ -3,7 +3,8 @@
 use crate::common::Bench;
 use handstand::Model;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
-use handstand::log::{LogRequest, Motion, MotionSource, read};
+use handstand::log::{LogRequest, read};
+use handstand::motion::{Motion, MotionSource};
 use handstand::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, Sensor, StateFeedback, stream,
 };

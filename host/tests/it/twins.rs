@@ -5,7 +5,8 @@ use handstand::diagnose::{
     DiagnoseOptions, Diagnosis, FittedEffect, Verdict, candidates, diagnose,
 };
 use handstand::fitting::Candidate;
-use handstand::log::{LogRequest, Motion, MotionSource, read};
+use handstand::log::{LogRequest, read};
+use handstand::motion::{Motion, MotionSource};
 use handstand::sim::{Memory, Plant, Start, predict};
 use std::fmt::Write as _;
 use std::path::Path;

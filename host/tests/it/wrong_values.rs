@@ -3,8 +3,9 @@
 use handstand::Model;
 use handstand::challenge::{Bench, Motions, bench};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose};
-use handstand::log::{LogRequest, Motion, read};
+use handstand::log::{LogRequest, read};
 use handstand::model::ParameterPath;
+use handstand::motion::Motion;
 use std::path::Path;
 
 /// The bench's motions, to fit and held out.

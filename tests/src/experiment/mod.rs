@@ -14,8 +14,9 @@ use handstand::experiment::{
     Criterion, ExperimentLimits, ExperimentProposal, ProposeOptions, propose,
 };
 use handstand::fitting::Candidate;
-use handstand::log::{LogRequest, Motion, read};
+use handstand::log::{LogRequest, read};
 use handstand::model::ParameterPath;
+use handstand::motion::Motion;
 use handstand::{Error, Model};
 use rayon::prelude::*;
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! How far readings lie from a smooth curve.
 
-use handstand::log::Motion;
+use handstand::motion::Motion;
 use nalgebra::{DMatrix, DVector};
 
 /// Readings that a cubic is laid through.

@@ -3,8 +3,9 @@
 use super::median_seconds;
 use handstand::diagnose::{DiagnoseOptions, Verdict, diagnose};
 use handstand::fitting::{FitData, FitOptions, Horizon, best_fit, fit, fit_start_states};
-use handstand::log::{LogRequest, Motion, read};
+use handstand::log::{LogRequest, read};
 use handstand::model::ParameterPath;
+use handstand::motion::Motion;
 use handstand::{Error, Model, Result};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,8 +1,8 @@
 //! The changes of model and motions by which logs are spoiled.
 
 use handstand::Model;
-use handstand::log::Motion;
 use handstand::model::{Drive, Motor, Unit};
+use handstand::motion::Motion;
 use std::f64::consts::PI;
 
 /// Time for which a joint stands still, s.

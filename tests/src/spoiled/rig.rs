@@ -1,7 +1,8 @@
 //! Rigs with their models and logs: bundled, public, simulated.
 
 use handstand::challenge::{Motions, bench};
-use handstand::log::{LogRequest, Motion, read};
+use handstand::log::{LogRequest, read};
+use handstand::motion::Motion;
 use handstand::{Model, Result};
 use std::path::{Path, PathBuf};
 

@@ -7,8 +7,8 @@ use super::edits::{
 use super::rig::Rig;
 use handstand::Model;
 use handstand::diagnose::conventions::{LogColumn, Remedy, scales_torque_by};
-use handstand::log::Motion;
 use handstand::model::{AngleZero, Angles, Unit};
+use handstand::motion::Motion;
 use std::f64::consts::{PI, TAU};
 
 /// A way to spoil a log; joints count from 0.

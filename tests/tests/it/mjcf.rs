@@ -3,8 +3,8 @@
 use crate::simulators::{answers, python};
 use handstand::Model;
 use handstand::challenge::{KINDS, Motions, true_model_toml};
-use handstand::log::Motion;
 use handstand::model::export::mjcf;
+use handstand::motion::Motion;
 use handstand::sim::{Memory, Plant, Start, predict};
 use serde_json::{Value, json};
 use std::path::Path;

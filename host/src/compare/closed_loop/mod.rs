@@ -13,8 +13,8 @@ pub(crate) use text::{LEGEND, closed_loop_rows};
 
 use super::sample_features::speed_rad_s;
 use crate::error::{Error, Result};
-use crate::log::Motion;
 use crate::model::Model;
+use crate::motion::Motion;
 use crate::sim::closed_loop::{
     ClosedLoop, InitialState, PosedPlant, Sensor, StateFeedback, Velocity, set_delay, stream,
 };

@@ -7,8 +7,9 @@
 use super::leave_out::{LeaveOut, Unusable};
 use super::remedy::LogColumn;
 use crate::fitting::{FitData, Horizon, guessed_nodes, predicted};
-use crate::log::{LEAST_ROWS, Motion};
+use crate::log::LEAST_ROWS;
 use crate::model::Model;
+use crate::motion::Motion;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 

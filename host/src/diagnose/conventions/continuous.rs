@@ -2,7 +2,8 @@
 
 use super::remedy::{LogColumn, Remedy};
 use super::trial::{Effort, RemedyTrial, Trial};
-use crate::log::{LEAST_ROWS, Motion};
+use crate::log::LEAST_ROWS;
+use crate::motion::Motion;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 

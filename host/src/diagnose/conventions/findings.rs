@@ -5,9 +5,10 @@ use super::remedy::{LogColumn, Remedy};
 use super::search::Found;
 use super::trial::Trial;
 use crate::error::{Place, Result};
-use crate::log::{LogFinding, Motion, Proof, Severity};
+use crate::log::{LogFinding, Proof, Severity};
 use crate::model::edit::{changed_lines, set_reading};
 use crate::model::{Angles, Dimension, JointColumns, MeasuredSignal, Model, Unit};
+use crate::motion::Motion;
 use std::path::Path;
 
 /// A model's file: its path, for messages, and its text.

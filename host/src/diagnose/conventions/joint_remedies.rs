@@ -1,8 +1,8 @@
 //! What may be wrong with how a model reads the motion of one joint.
 
 use super::remedy::{LogColumn, Remedy, other_units, travel_rad};
-use crate::log::Motion;
 use crate::model::{Model, Unit};
+use crate::motion::Motion;
 use std::f64::consts::PI;
 
 /// Travel of a joint that a unit may make plausible, rad or m.

@@ -6,8 +6,8 @@ use super::rating::{ModelReading, Rating};
 use super::remedy::LogColumn;
 use super::search::is_doubtful_time;
 use super::trial::Effort;
-use crate::log::{Motion, excerpts};
 use crate::model::Model;
+use crate::motion::{Motion, excerpts};
 use std::ops::Range;
 
 /// A position that does not change for so long is no measurement of a motion, s.

@@ -27,8 +27,9 @@ pub use search::{Found, search};
 pub use trial::{Trial, scales_torque_by};
 
 use crate::error::Result;
-use crate::log::{LogFinding, LogRequest, Motion, expanded, read};
+use crate::log::{LogFinding, LogRequest, expanded, read};
 use crate::model::{Model, Unit};
+use crate::motion::Motion;
 use findings::Origin;
 use reread::reread;
 
@@ -110,7 +111,7 @@ fn readable(request: &LogRequest, model: &Model) -> Vec<Motion> {
 /// Share of the motion that the model leaves unexplained, from fitted start states: 0 nothing, 1 as
 /// much as going on at constant speed does; none where no joint moves.
 pub fn unexplained(model: &Model, motions: &[Motion]) -> Option<f64> {
-    let few = crate::log::excerpts(motions, search::SAMPLES);
+    let few = crate::motion::excerpts(motions, search::SAMPLES);
     let reading = rating::ModelReading::new(model.clone(), few);
     reading.rated(trial::Effort::Starts).share()
 }

@@ -9,8 +9,8 @@ use super::remedy::{LogColumn, Remedy};
 use super::trial::Effort;
 use crate::effects::EFFECTS;
 use crate::fitting::Candidate;
-use crate::log::Motion;
 use crate::model::{Model, effect_on};
+use crate::motion::Motion;
 use rayon::prelude::*;
 
 /// Whether a remedy changes how strong, or of which sign, a joint's input is, or how far the joint

@@ -8,8 +8,8 @@ use super::trial::Effort;
 use crate::fitting::{
     FitData, FitOptions, Horizon, Node, Window, fit, free_parameters, guessed_nodes, predicted,
 };
-use crate::log::Motion;
 use crate::model::{MeasuredSignal, Model};
+use crate::motion::Motion;
 
 /// Longest window, s, and least samples of one where samples are rare.
 const WINDOW_S: f64 = 1.0;

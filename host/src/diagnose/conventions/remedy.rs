@@ -2,11 +2,11 @@
 
 use super::joint_remedies::{of_motion, of_speed};
 use super::reread::{reread, written};
-use crate::log::Motion;
 use crate::log::init::name_guess;
 use crate::model::{
     AngleZero, Angles, Column, ColumnMean, Dimension, Drive, Model, ParameterPath, Unit,
 };
+use crate::motion::Motion;
 
 /// A column of the logs, or of one joint of them (index from 0).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

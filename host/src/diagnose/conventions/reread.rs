@@ -1,7 +1,7 @@
 //! Motions read by one model's columns, as another's would have read them.
 
-use crate::log::Motion;
 use crate::model::{Column, ColumnMean, LogColumns};
+use crate::motion::Motion;
 
 /// The motion as the columns `new` read it, where `old` read it before: units, signs, offsets and
 /// shifts in time. Where several columns make one quantity, all must have changed alike.

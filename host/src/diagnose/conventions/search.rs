@@ -8,8 +8,8 @@ use super::rating::ModelReading;
 use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
 use super::trial::{Effort, RemedyTrial, Trial, scales_torque_by};
 use crate::fitting::coarsened;
-use crate::log::{Motion, excerpts};
 use crate::model::{Model, Unit};
+use crate::motion::{Motion, excerpts};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

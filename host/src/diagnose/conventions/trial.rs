@@ -6,8 +6,8 @@ use super::remedy::{LogColumn, Remedy};
 use crate::diagnose::values::values_of;
 use crate::effects::TorqueScale;
 use crate::fitting::Candidate;
-use crate::log::Motion;
 use crate::model::{Drive, Model, ParameterPath, Unit};
+use crate::motion::Motion;
 use rayon::prelude::*;
 
 /// A remedy with its proof: the errors before and after it, on the same windows.

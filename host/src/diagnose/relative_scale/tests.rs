@@ -2,8 +2,8 @@ use super::super::words::tests::{effect, said};
 use super::*;
 use crate::diagnose::Verdict;
 use crate::effects::{EFFECTS, Scope};
-use crate::log::Motion;
 use crate::model::{EffectInstance, effect_on};
+use crate::motion::Motion;
 use crate::sim::{Memory, Plant, Start, predict};
 use std::path::Path;
 

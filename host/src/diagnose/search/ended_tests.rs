@@ -5,8 +5,8 @@ use crate::diagnose::pipeline::diagnose_on;
 use crate::diagnose::progress::Course;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, SearchEnded, Verdict, diagnose};
 use crate::fitting::{Halt, StopSwitch};
-use crate::log::Motion;
 use crate::model::Model;
+use crate::motion::Motion;
 use std::sync::Mutex;
 
 /// An arm that lacks friction and a delay, which is left out of the library.

@@ -4,8 +4,9 @@ use crate::diagnose::pipeline::Searched;
 use crate::diagnose::progress::Course;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
 use crate::fitting::{Candidate, Fit, Horizon, fit_start_states};
-use crate::log::{LogRequest, Motion, read};
+use crate::log::{LogRequest, read};
 use crate::model::Model;
+use crate::motion::Motion;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 

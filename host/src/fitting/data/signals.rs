@@ -3,8 +3,8 @@
 use super::super::horizon::Window;
 use super::super::noise::{Noise, noise};
 use super::FitData;
-use crate::log::Motion;
 use crate::model::{ColumnMean, MeasuredSignal, Model};
+use crate::motion::Motion;
 use std::ops::Range;
 
 /// Stands for the noise of a joint of which nothing is measured.

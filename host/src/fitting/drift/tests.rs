@@ -1,7 +1,7 @@
 use super::*;
 use crate::fitting::told_values::blind;
 use crate::fitting::{FitOptions, fit};
-use crate::log::MotionSource;
+use crate::motion::MotionSource;
 use crate::sim::{Memory, Plant, Start, predict};
 use std::path::Path;
 

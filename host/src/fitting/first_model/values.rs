@@ -1,9 +1,9 @@
 //! Which values a first model is given, which of them are fitted, and from where.
 
 use crate::fitting::effect_named;
-use crate::log::Motion;
 use crate::log::init::Draft;
 use crate::model::{EffectInstance, JointField, LinkField, Model, ParameterPath};
+use crate::motion::Motion;
 
 /// Factors on what scales a whole drive, and on friction, that a fit starts from.
 const SCALES: [f64; 3] = [1.0, 0.25, 4.0];

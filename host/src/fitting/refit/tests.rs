@@ -3,7 +3,8 @@
 use super::*;
 use crate::challenge::{Bench, Readings, read_arm, read_pendulum};
 use crate::effects;
-use crate::log::{LogRequest, Motion, MotionSource, read};
+use crate::log::{LogRequest, read};
+use crate::motion::{Motion, MotionSource};
 use crate::sim::{Memory, Plant, Start, predict};
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use crate::lab::pages::report as pages;
 use crate::lab::reply::{Answer, LabError, download as file};
 use crate::lab::server::LabState;
 use crate::lab::session::{LabSession, MOTION_FILE, SavedSession};
-use crate::log::Split;
+use crate::motion::Split;
 use crate::report::{HashedModel, Report, ReportProvenance, html_with};
 use axum::extract::{Path, State};
 use std::sync::Arc;

@@ -3,8 +3,9 @@
 
 use super::LabSession;
 use super::saved::{SavedLog, SavedSession};
-use crate::log::{LogRequest, Split};
+use crate::log::LogRequest;
 use crate::model::Model;
+use crate::motion::Split;
 use std::sync::{MutexGuard, PoisonError};
 
 /// How many readings are known: those of some models and sets of logs.

@@ -6,8 +6,9 @@ mod wrong_cells;
 
 use super::*;
 use crate::log::tests::fixture::{columns, first, model, motion, position_drive};
-use crate::log::{Motion, to_csv};
+use crate::log::to_csv;
 use crate::model::{Drive, LogColumns, Unit};
+use crate::motion::Motion;
 
 fn found(text: &str, model: &Model) -> Vec<LogFinding> {
     let log = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();

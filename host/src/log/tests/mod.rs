@@ -4,6 +4,7 @@ use self::fixture::{column, columns, first, model, motion, position_drive};
 use super::*;
 use crate::error::Error;
 use crate::model::{ArmFigures, Column, LogColumns};
+use crate::motion::Motion;
 use proptest::prelude::*;
 
 mod bam;

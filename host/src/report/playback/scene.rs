@@ -1,8 +1,8 @@
 //! What the page plays: a chain, and tracks of its angles over time.
 
 use crate::compare::Comparison;
-use crate::log::Motion;
 use crate::model::{Angles, Drive, MeasuredSignal, Model};
+use crate::motion::Motion;
 use serde::Serialize;
 
 /// Most samples of a track; longer motions are thinned evenly.

@@ -64,8 +64,8 @@ impl<R: Rows> Run<'_, R> {
 mod tests {
     use super::*;
     use crate::effects::named;
-    use crate::log::Motion;
     use crate::model::{EffectInstance, Model};
+    use crate::motion::Motion;
     use crate::sim::{Plant, predict};
     use std::path::Path;
 

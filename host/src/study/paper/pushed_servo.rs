@@ -4,8 +4,8 @@ use super::figure::Holds;
 use super::findings::Conclusion;
 use super::servo;
 use crate::error::Result;
-use crate::log::Motion;
 use crate::model::{AngleZero, Drive, Model};
+use crate::motion::Motion;
 use crate::output::number::short;
 use crate::sim::Start;
 

@@ -4,8 +4,8 @@
 use super::figure::{Holds, PaperFigure};
 use super::identification::identification;
 use crate::error::Result;
-use crate::log::{Motion, MotionSource};
 use crate::model::Model;
+use crate::motion::{Motion, MotionSource};
 use crate::output::number::interval;
 use crate::output::plot::{Chart, Curve, Tone};
 use crate::sim::{Memory, Plant, Start, predict};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::log::MotionSource;
+use crate::motion::MotionSource;
 use std::f64::consts::PI;
 use std::path::Path;
 

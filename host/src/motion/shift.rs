@@ -6,12 +6,12 @@ use crate::model::{JointColumns, LogColumns};
 impl Motion {
     /// Moves columns in time by what `columns` says, s: values between samples by straight lines.
     /// Rows at the ends for which a moved column has no value are left out.
-    pub(crate) fn shifted(self, columns: &LogColumns) -> Motion {
+    pub fn shifted(self, columns: &LogColumns) -> Motion {
         self.shifted_by(|joint| columns.joints[joint].shifts_s())
     }
 
     /// As [`Motion::shifted`], by what each joint's position, velocity, rate and input ask for, s.
-    pub(crate) fn shifted_by(mut self, shifts_s: impl Fn(usize) -> [f64; 4]) -> Motion {
+    pub fn shifted_by(mut self, shifts_s: impl Fn(usize) -> [f64; 4]) -> Motion {
         let (mut earliest, mut latest) = (0.0_f64, 0.0_f64);
         for joint in 0..self.position_rad.len() {
             let shifts = shifts_s(joint);
@@ -42,7 +42,7 @@ impl Motion {
     }
 
     /// Some of its samples.
-    pub(crate) fn part(&self, samples: std::ops::Range<usize>) -> Motion {
+    pub fn part(&self, samples: std::ops::Range<usize>) -> Motion {
         let of = |values: &Vec<f64>| values[samples.clone()].to_vec();
         let of_each = |all: &[Option<Vec<f64>>]| all.iter().map(|v| v.as_ref().map(of)).collect();
         Motion {
@@ -65,7 +65,7 @@ impl Motion {
 }
 
 /// By how much the earliest and the latest of all columns is moved, s: at most 0, at least 0.
-pub(super) fn ends_s(columns: &LogColumns) -> (f64, f64) {
+pub fn ends_s(columns: &LogColumns) -> (f64, f64) {
     let shifts_s = columns.joints.iter().flat_map(JointColumns::shifts_s);
     shifts_s.fold((0.0, 0.0), |(earliest, latest): (f64, f64), shift_s| {
         (earliest.min(shift_s), latest.max(shift_s))

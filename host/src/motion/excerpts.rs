@@ -7,7 +7,7 @@ const LENGTH: usize = 400;
 
 /// Pieces of the motions, evenly spread, of some `most` samples in all; the motions themselves
 /// where they have no more.
-pub(crate) fn excerpts(motions: &[Motion], most: usize) -> Vec<Motion> {
+pub fn excerpts(motions: &[Motion], most: usize) -> Vec<Motion> {
     let samples: usize = motions.iter().map(Motion::len).sum();
     if samples <= most {
         return motions.to_vec();

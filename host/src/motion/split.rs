@@ -1,8 +1,11 @@
 //! Splits motions into training and held-out ones.
 
 use super::Motion;
-use super::log_set::NAME_ONCE;
 use crate::error::{Error, Result};
+
+/// What to do about rows that are fitted and held out.
+pub const NAME_ONCE: &str = "name each row once, a range includes its end: what was learned from \
+                             proves nothing";
 
 /// Motions to learn from and motions to be judged by; none is in both.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -61,7 +64,7 @@ pub fn split(mut motions: Vec<Motion>, explicit_holdout: Vec<Motion>) -> Split {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::tests::fixture::motion;
+    use crate::motion::fixture::motion;
 
     #[test]
     fn holds_out_the_last_third() {

@@ -1,5 +1,15 @@
 //! One motion: samples recorded without interruption, in SI and in the model's angle convention.
 
+mod excerpts;
+#[cfg(test)]
+pub(crate) mod fixture;
+mod shift;
+mod split;
+
+pub use excerpts::excerpts;
+pub use shift::ends_s;
+pub use split::{NAME_ONCE, Split, split};
+
 use crate::model::MeasuredSignal;
 use std::path::PathBuf;
 
@@ -112,7 +122,7 @@ impl Motion {
     }
 
     /// The same with gaps for those of these joints of whose rate sensor it holds nothing.
-    pub(crate) fn with_rates(mut self, joints: &[usize]) -> Motion {
+    pub fn with_rates(mut self, joints: &[usize]) -> Motion {
         let samples = self.len();
         if !joints.is_empty() {
             self.rate_rad_s.resize(self.position_rad.len(), None);
