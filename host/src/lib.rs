@@ -22,7 +22,10 @@ pub mod log;
 pub mod model;
 pub mod motion;
 pub mod output;
+pub mod paper;
 pub mod report;
+#[cfg(feature = "virtual-cm5")]
+pub mod robot_demo;
 pub mod sim;
 pub mod study;
 pub mod synth;

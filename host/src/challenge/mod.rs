@@ -18,8 +18,6 @@ mod readings;
 mod reference;
 mod regulator;
 mod robot;
-#[cfg(feature = "virtual-cm5")]
-pub mod robot_demo;
 mod robot_motion;
 mod rounding;
 mod score;

@@ -3,7 +3,7 @@
 use super::show::{or_dash, table_of};
 use super::talk::show;
 use super::{ExitStatus, Talk};
-use handstand::challenge::robot_demo::{
+use handstand::robot_demo::{
     DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run as circle,
 };
 use handstand::deploy::rehearsal::BalanceAttempt;

@@ -17,7 +17,7 @@ use super::page::PageFile;
 use super::{ExitStatus, Talk, show};
 use handstand::Result;
 use handstand::output::table::TableColumn;
-use handstand::study::paper::{
+use handstand::paper::{
     Agreement, CheckedNumber, Computed, Reproduction, STEPS, check, html, reproduce,
 };
 use serde_json::{Value, json};

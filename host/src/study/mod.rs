@@ -5,7 +5,7 @@
 //! (robots drawn around it, in figures). On top of that: `sweep` (a [`quantity`] at every level),
 //! `region` (of starts), `longest_delay`, `mass_errors` (in the linear loop), `verify` (a design,
 //! with the effects that it leaves out), and `monte_carlo` (chunks of runs) -> `journal` (on disk)
-//! -> `merge` -> `summary`. [`paper`] reproduces the paper's numbers with it.
+//! -> `merge` -> `summary`. [`crate::paper`] reproduces the paper's numbers with it.
 
 mod case;
 mod conditions;
@@ -21,7 +21,6 @@ mod manner;
 mod mass_errors;
 mod merge;
 mod monte_carlo;
-pub mod paper;
 mod parse;
 mod plot;
 mod quantities;

@@ -1,7 +1,7 @@
 //! The whole circle on a virtual robot: it falls as believed, and stands as learned.
 
 use crate::common::Bench;
-use handstand::challenge::robot_demo::{HiddenRobot, LIMIT_OPTIONS, RobotAnswer, run};
+use handstand::robot_demo::{HiddenRobot, LIMIT_OPTIONS, RobotAnswer, run};
 use handstand::challenge::unseal;
 
 /// Lag and a dead zone, found in the recordings, carried into the plan. One robot: a diagnosis is

@@ -72,7 +72,7 @@ pub(super) fn fitted(number: &'static str, drawn: Result<FittedFigure, String>) 
 
 /// The servo on the bench.
 pub(super) fn model() -> Result<Model> {
-    let text = include_str!("../../../models/servo.toml");
+    let text = include_str!("../../models/servo.toml");
     Model::parse(text, Path::new("servo.toml"))
 }
 
