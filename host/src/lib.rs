@@ -15,6 +15,7 @@ pub mod dynamics;
 pub mod effects;
 pub mod error;
 pub mod experiment;
+pub mod first_model;
 pub mod fitting;
 pub mod lab;
 pub mod link;

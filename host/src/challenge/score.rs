@@ -2,8 +2,6 @@
 
 use super::seal::{ChallengeAnswer, unseal};
 use crate::error::{Error, Place, Result};
-use crate::fitting::{Candidate, FitData, Horizon, fit_start_states};
-use crate::log::{LogRequest, read};
 use crate::model::{EffectInstance, Model};
 use serde::Serialize;
 use std::path::Path;
@@ -38,11 +36,16 @@ pub struct ScoredValue {
     pub estimate: Option<f64>,
 }
 
-/// Opens the answer of the challenge in `dir` and scores `model` by it.
+/// Opens the answer of the challenge in `dir` and scores `model` by it. `error_rad` simulates a
+/// model along a log from fitted start states; a challenge knows no simulation but its own.
 ///
 /// # Errors
-/// Files of the challenge that are missing or were changed.
-pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore> {
+/// Files of the challenge that are missing or were changed, and those of `error_rad`.
+pub fn score(
+    dir: &Path,
+    model: &Model,
+    error_rad: impl Fn(&Model, &Path) -> Result<f64>,
+) -> Result<ChallengeScore> {
     let file = dir.join("answer.sealed");
     let text = std::fs::read_to_string(&file).map_err(|error| Error::file(&file, "read", error))?;
     let answer: ChallengeAnswer =
@@ -50,15 +53,11 @@ pub fn score(dir: &Path, model: &Model) -> Result<ChallengeScore> {
     let nominal = Model::load(&dir.join("nominal.toml"))?;
     let truth = Model::parse(&answer.true_model_toml, &file)?;
     let added = beyond(model, &nominal);
-    let name = |effect: &&EffectInstance| Candidate::from(*effect).to_string();
+    let name = |effect: &&EffectInstance| effect.name();
     let names: Vec<String> = added.iter().map(name).collect();
     let hidden = beyond(&truth, &nominal).first().map(name);
-    let last = LogRequest::whole(dir.join("c.csv"));
-    let error = |model: &Model| -> Result<f64> {
-        let motions = read(std::slice::from_ref(&last), &model.log)?;
-        let data = FitData::new(model, motions, Horizon::Whole);
-        Ok(fit_start_states(model, &data).rms(&data))
-    };
+    let last = dir.join("c.csv");
+    let error = |model: &Model| error_rad(model, &last);
     Ok(ChallengeScore {
         solved: names.iter().eq(hidden.iter()),
         values: values(&answer, &added),

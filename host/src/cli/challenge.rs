@@ -15,6 +15,7 @@
 
 use super::{ExitStatus, Talk, show};
 use handstand::challenge::{self, ChallengeScore, Hidden, kind_named};
+use handstand::diagnose::whole_error_rad;
 use handstand::fitting::effect_named;
 use handstand::output::number::exact;
 use handstand::{Error, Model, Result};
@@ -58,7 +59,8 @@ pub fn run(command: &ChallengeCommand, talk: &Talk) -> Result<ExitStatus> {
     match command {
         ChallengeCommand::New(args) => new(args, talk),
         ChallengeCommand::Score(args) => {
-            let score = challenge::score(&args.folder, &Model::load(&args.model)?)?;
+            let score =
+                challenge::score(&args.folder, &Model::load(&args.model)?, whole_error_rad)?;
             talk.result(&score, || text(&score))?;
             Ok(ExitStatus::answer(score.solved))
         }

@@ -32,7 +32,7 @@ use super::challenge::text as challenge_text;
 use super::{Cli, Command, ExitStatus, Talk, diagnose};
 use clap::Parser as _;
 use handstand::challenge::{self, ChallengeScore};
-use handstand::diagnose::{Diagnosis, FittedEffect, Verdict};
+use handstand::diagnose::{Diagnosis, FittedEffect, Verdict, whole_error_rad};
 use handstand::{Error, Model, Result};
 use std::path::{Path, PathBuf};
 
@@ -121,7 +121,8 @@ fn bench(effect: Option<&str>, seed: u64, output: &Path, talk: &Talk) -> Result<
         return Ok(ExitStatus::Refused);
     };
     let model = improved(&found, &files, talk)?;
-    let score = challenge::score(output, &Model::load(model.unwrap_or(nominal).as_ref())?)?;
+    let end = Model::load(model.unwrap_or(nominal).as_ref())?;
+    let score = challenge::score(output, &end, whole_error_rad)?;
     match model {
         Some(model) => {
             talk.say("\nThe answer:");

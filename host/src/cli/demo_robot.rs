@@ -3,14 +3,12 @@
 use super::show::{or_dash, table_of};
 use super::talk::show;
 use super::{ExitStatus, Talk};
-use handstand::robot_demo::{
-    DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run as circle,
-};
 use handstand::deploy::rehearsal::BalanceAttempt;
 use handstand::diagnose::Verdict;
 use handstand::log::LogRequest;
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
+use handstand::robot_demo::{DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run as circle};
 use handstand::{Error, Result};
 use std::path::Path;
 

@@ -16,7 +16,8 @@
 //! `low` and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`).
 
 use super::{ExitStatus, Talk, input};
-use handstand::fitting::{StopSwitch, estimate};
+use handstand::first_model::estimate;
+use handstand::fitting::StopSwitch;
 use handstand::log::init::Draft;
 use handstand::log::{LogRequest, RawLog};
 use handstand::output::vacant;

@@ -1,13 +1,14 @@
 //! Arguments that several commands take.
 
 use super::Talk;
-use handstand::compare::{ClosedLoopComparison, compare_closed_loop};
+use handstand::compare::ClosedLoopComparison;
 use handstand::error::Place;
 use handstand::fitting::{Horizon, free_parameters};
 use handstand::log::{LogFinding, LogFormat, LogRequest, LogSet, read_with_findings};
 use handstand::model::{LogColumns, ParameterPath};
 use handstand::motion::{Motion, Split};
 use handstand::output::vacant;
+use handstand::study::compare_closed_loop;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
 use std::path::{Path, PathBuf};

@@ -17,9 +17,9 @@ mod text;
 mod tests;
 
 pub use closed_loop::{
-    ClosedLoopComparison, LoopMotion, LoopSignal, closed_loop_text, compare_closed_loop,
+    ClosedLoopComparison, LEGEND as CLOSED_LOOP_LEGEND, LoopMotion, LoopSignal, closed_loop_rows,
+    closed_loop_text,
 };
-pub(crate) use closed_loop::{LEGEND as CLOSED_LOOP_LEGEND, closed_loop_rows};
 pub use failure::FailingSamples;
 pub use model_run::ModelRun;
 pub(crate) use residual_tests::{independence, whiteness};
@@ -27,4 +27,5 @@ pub use residual_variables::{ResidualVariable, residual_variables};
 pub use result::{Comparison, Failure, HorizonError, ResidualTest, SignalError, Trace};
 pub(crate) use run::fit_percent;
 pub use run::{compare, compare_all};
+pub use sample_features::speed_rad_s;
 pub use text::{text, waterfall};

@@ -101,7 +101,7 @@ pub(super) fn features(model: &Model, motions: &[Motion], joint: usize) -> Vec<S
 }
 
 /// Slope of a straight line through the samples within 25 ms, at least one to either side.
-pub(super) fn speed_rad_s(time_s: &[f64], angle_rad: &[f64]) -> Vec<f64> {
+pub fn speed_rad_s(time_s: &[f64], angle_rad: &[f64]) -> Vec<f64> {
     let last = time_s.len().saturating_sub(1);
     let (mut from, mut to) = (0, 0);
     (0..time_s.len())

@@ -38,6 +38,7 @@ mod terms;
 mod values;
 mod verdict;
 mod warnings;
+mod whole_error;
 pub mod words;
 
 pub use candidates::candidates;
@@ -52,3 +53,4 @@ pub use measured_value::values_behind;
 pub use options::DiagnoseOptions;
 pub use pipeline::diagnose;
 pub(crate) use selection::independent_share;
+pub use whole_error::whole_error_rad;

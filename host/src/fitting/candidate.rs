@@ -1,9 +1,9 @@
 //! An effect of the library at a place of the model (a joint, all driven joints, the whole rig): by
 //! its name, its addresses, its start values.
 
-use crate::effects::{Effect, Found, Parameter, SMOOTH_DIFFERENCE, Scope, at_all, listed, look_up};
+use crate::effects::{Effect, Found, Parameter, SMOOTH_DIFFERENCE, Scope, listed, look_up};
 use crate::error::Error;
-use crate::model::{EffectInstance, Model, ParameterPath, effect_on};
+use crate::model::{EffectInstance, Model, ParameterPath, effect_on, named_at};
 use std::fmt;
 
 /// An effect of the library at a joint, at all driven joints with the same values, or on the whole
@@ -19,13 +19,7 @@ pub struct Candidate {
 
 impl fmt::Display for Candidate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.joint {
-            Some(joint) => write!(f, "{}@{}", self.effect.info().id, joint + 1),
-            None => {
-                let id = self.effect.info().id;
-                write!(f, "{id}{}", at_all(id))
-            }
-        }
+        f.write_str(&named_at(self.effect, self.joint))
     }
 }
 

@@ -138,7 +138,21 @@ pub struct EffectInstance {
     pub values: Vec<f64>,
 }
 
+/// An effect and its joint, by index from 0: `coulomb@2`, `delay@all`.
+pub fn named_at(effect: &dyn Effect, joint: Option<usize>) -> String {
+    let id = effect.info().id;
+    match joint {
+        Some(joint) => format!("{id}@{}", joint + 1),
+        None => format!("{id}{}", effects::at_all(id)),
+    }
+}
+
 impl EffectInstance {
+    /// The effect and its joint: `coulomb@2`, `delay@all`.
+    pub fn name(&self) -> String {
+        named_at(self.effect, self.joint)
+    }
+
     /// Whether it is the effect of this id at this joint.
     fn is(&self, id: &str, joint: Option<usize>) -> bool {
         self.joint == joint && self.effect.info().id == id

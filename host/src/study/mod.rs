@@ -8,6 +8,7 @@
 //! -> `merge` -> `summary`. [`crate::paper`] reproduces the paper's numbers with it.
 
 mod case;
+mod closed_loop;
 mod conditions;
 mod ellipsoid;
 mod error;
@@ -39,6 +40,7 @@ mod verify;
 mod tests;
 
 pub use case::{Case, Control, Designed};
+pub use closed_loop::compare_closed_loop;
 pub use conditions::{CONDITIONS, LoopCondition, NonIdeality, condition};
 pub use ellipsoid::Ellipsoid;
 pub use error::StudyError;

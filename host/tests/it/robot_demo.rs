@@ -1,8 +1,8 @@
 //! The whole circle on a virtual robot: it falls as believed, and stands as learned.
 
 use crate::common::Bench;
-use handstand::robot_demo::{HiddenRobot, LIMIT_OPTIONS, RobotAnswer, run};
 use handstand::challenge::unseal;
+use handstand::robot_demo::{HiddenRobot, LIMIT_OPTIONS, RobotAnswer, run};
 
 /// Lag and a dead zone, found in the recordings, carried into the plan. One robot: a diagnosis is
 /// most of a minute. `cargo xtask robot-demo` runs ten.

@@ -3,8 +3,8 @@
 
 use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand::robot_demo::{RobotDemo, ScoredEffect, run as circle};
 use handstand::deploy::rehearsal::BalanceAttempt;
+use handstand::robot_demo::{RobotDemo, ScoredEffect, run as circle};
 use handstand_tests::measured::Measured;
 use serde_json::json;
 

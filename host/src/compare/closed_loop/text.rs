@@ -5,7 +5,7 @@ use crate::compare::text::aligned;
 use crate::output::number::{NONE, mrad_in_column, short};
 
 /// What a closed-loop table tells, below it.
-pub(crate) const LEGEND: &str = "Each loop is simulated from the first sample of each motion. \
+pub const LEGEND: &str = "Each loop is simulated from the first sample of each motion. \
     Phase drifts, so judge by rms, limit cycle and falls.";
 
 /// One column of the table: the measured loop, or a model's with its name.
@@ -41,7 +41,7 @@ pub fn closed_loop_text(compared: &[(&str, &ClosedLoopComparison)]) -> String {
 
 /// The table's cells: a header (nothing, `measured`, the models' names), then a row per figure that
 /// begins with its name and unit.
-pub(crate) fn closed_loop_rows(compared: &[(&str, &ClosedLoopComparison)]) -> Vec<Vec<String>> {
+pub fn closed_loop_rows(compared: &[(&str, &ClosedLoopComparison)]) -> Vec<Vec<String>> {
     let Some((_, last)) = compared.last() else {
         return Vec::new();
     };

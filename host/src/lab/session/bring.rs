@@ -5,7 +5,7 @@ use super::job::JobReport;
 use super::saved::{SavedSession, SavedStep};
 use super::work::unchanged;
 use crate::error::{Error, Result};
-use crate::fitting::estimate;
+use crate::first_model::estimate;
 use crate::log::init::Draft;
 use crate::log::{LogRequest, RawLog};
 use crate::model::Model;

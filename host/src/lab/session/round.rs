@@ -2,6 +2,7 @@
 
 use super::LabSession;
 use crate::challenge::{ChallengeScore, Hidden, generate, score, write};
+use crate::diagnose::whole_error_rad;
 use crate::error::{Error, Result};
 use rand::RngCore as _;
 use serde::{Deserialize, Serialize};
@@ -79,7 +80,7 @@ impl LabSession {
         else {
             return Err(Error::usage("no round is open", "begin one"));
         };
-        let result = score(&self.folder().join(FOLDER), &model)?;
+        let result = score(&self.folder().join(FOLDER), &model, whole_error_rad)?;
         self.change(|saved| {
             if let Some(round) = &mut saved.round {
                 round.result = Some(result.into());

@@ -2,7 +2,7 @@
 //! one that is held too long or too short leaves the others no room.
 
 use super::settling::Settling;
-use crate::fitting::fit::Fit;
+use crate::fitting::Fit;
 use crate::model::{Link, LinkField, Model, ParameterPath};
 
 /// A lever is at most so many times its guess, and at least that share.

@@ -1,6 +1,6 @@
 //! Measured and simulated deviations, and their figures.
 
-use super::result::{LoopMotion, LoopSignal};
+use crate::compare::{LoopMotion, LoopSignal};
 
 /// Deviations of one motion at its samples from the first on: `[joint][sample]`, rad, up to the
 /// fall; not a number where nothing was measured.

@@ -14,15 +14,10 @@ mod settling;
 mod tests;
 mod values;
 
-use super::data::FitData;
-use super::fit::{Fit, FitOptions};
-use super::halt::StopSwitch;
-use super::horizon::Horizon;
-use super::progress::Progress;
-use super::solve::fit;
-use super::step_size::coarsened;
-use super::ways::best_fit;
 use crate::error::Result;
+use crate::fitting::{
+    Fit, FitData, FitOptions, Horizon, Progress, StopSwitch, best_fit, coarsened, fit,
+};
 use crate::log::init::{Draft, Estimate};
 use crate::log::{LogRequest, read};
 use crate::model::{AngleZero, Drive, LinkField, Model, ParameterPath};
