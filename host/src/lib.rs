@@ -11,19 +11,14 @@ pub mod challenge;
 pub mod compare;
 pub mod deploy;
 pub mod diagnose;
-pub mod dynamics;
-pub mod effects;
-pub mod error;
 pub mod experiment;
 pub mod first_model;
 pub mod fitting;
 pub mod lab;
 pub mod link;
 pub mod log;
-pub mod model;
-pub mod motion;
-pub mod output;
 pub mod paper;
+pub mod plot;
 pub mod report;
 #[cfg(feature = "virtual-cm5")]
 pub mod robot_demo;
@@ -32,5 +27,5 @@ pub mod study;
 pub mod synth;
 pub mod sysid;
 
-pub use error::{Error, Place, Result};
-pub use model::Model;
+pub use handstand_model::{Error, Model, Place, Result};
+pub use handstand_model::{dynamics, effects, error, model, motion, output};

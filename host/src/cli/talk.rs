@@ -6,6 +6,7 @@ use handstand::output::write_new;
 use handstand::{Error, Result};
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use serde::Serialize;
+use std::fmt;
 use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -147,7 +148,23 @@ impl Talk {
         let _ = miette::set_hook(Box::new(|_| {
             Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
         }));
-        let _ = write!(std::io::stderr(), "{:?}", miette::Report::new(error));
+        let _ = write!(
+            std::io::stderr(),
+            "{:?}",
+            miette::Report::new(ShownError(error))
+        );
+    }
+}
+
+/// An error as people see it: with its remedy.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+struct ShownError(Error);
+
+impl miette::Diagnostic for ShownError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let remedy = self.0.remedy()?;
+        Some(Box::new(remedy))
     }
 }
 

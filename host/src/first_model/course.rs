@@ -1,7 +1,7 @@
 //! How far the estimate of a first model has come, and what ends it.
 
-use crate::fitting::{Halt, StopSwitch};
 use crate::fitting::Progress;
+use crate::fitting::{Halt, StopSwitch};
 use std::sync::{Mutex, PoisonError};
 
 /// What is done, one after the other.

@@ -3,9 +3,9 @@
 
 use super::values::{VISCOUS_NM_S_RAD, is_friction};
 use super::{ON, fit};
-use crate::fitting::{Interval, intervals};
 use crate::fitting::FitData;
 use crate::fitting::{Fit, FitOptions};
+use crate::fitting::{Interval, intervals};
 use crate::model::{EffectInstance, LinkField, Model, ParameterPath};
 
 /// A value is told by the log where its interval reaches no further than so many times its size.

@@ -1,7 +1,7 @@
 //! Scripts and styles of the pages, held in the program.
 
 use super::reply::{Answer, LabError, typed};
-use crate::output::plot;
+use crate::plot;
 use axum::extract::Path;
 
 const FRAME: &str = include_str!("assets/lab.css");

@@ -1,6 +1,6 @@
 //! A figure redrawn: its charts, and whether what the paper says of it holds.
 
-use crate::output::plot::Chart;
+use crate::plot::Chart;
 use serde::Serialize;
 
 /// Whether a conclusion holds.

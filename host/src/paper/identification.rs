@@ -3,7 +3,7 @@
 use super::computed::servo_estimate;
 use super::figure::{Holds, PaperFigure};
 use super::servo::fitted;
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use crate::sysid::generate::PAPER_TS_S;
 use crate::sysid::score;
 

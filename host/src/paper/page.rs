@@ -3,7 +3,7 @@
 use super::findings::Finding;
 use super::{Agreement, CheckedNumber, Holds, PaperFigure, Reproduction};
 use crate::output::number::short;
-use crate::output::plot::Chart;
+use crate::plot::Chart;
 use crate::report::page::{Section, document, table};
 use maud::{Markup, html as markup};
 

@@ -7,7 +7,7 @@ use super::case::{
 use super::figure::{Holds, PaperFigure};
 use crate::error::Result;
 use crate::output::number::short;
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use crate::sim::closed_loop::{Outcome, Velocity};
 use crate::study::{Case, bisect};
 

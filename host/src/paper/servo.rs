@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::model::Model;
 use crate::motion::{Motion, MotionSource};
 use crate::output::number::interval;
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use crate::sim::{Memory, Plant, Start, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{

@@ -7,7 +7,7 @@ use crate::diagnose::words::{SHOWN, explained_by};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
 use crate::model::MeasuredSignal;
 use crate::output::number::{NONE, mrad, short};
-use crate::output::plot::{Bar, largest};
+use crate::plot::{Bar, largest};
 use maud::{Markup, html};
 
 /// Rows that are in sight from the start.

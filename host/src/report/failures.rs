@@ -4,7 +4,7 @@ use super::page::Section;
 use super::{AFTER, BEFORE, Report};
 use crate::compare::{Comparison, Failure};
 use crate::output::number::percent;
-use crate::output::plot::{Bar, Tone};
+use crate::plot::{Bar, Tone};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

@@ -4,7 +4,7 @@ use super::page::{Section, document};
 use super::{margins_text, verification_text};
 use crate::error::Result;
 use crate::model::Model;
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use crate::study::{LoopResponse, MappedStart, Verification, region_map, response, step_response};
 use crate::synth::export::{self, Provenance};
 use crate::synth::{Design, LoopFigures, Request, SingularValues, singular_values};

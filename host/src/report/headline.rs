@@ -9,7 +9,7 @@ use crate::diagnose::words::headline;
 use crate::fitting::in_windows;
 use crate::model::MeasuredSignal;
 use crate::output::number::{mrad, short};
-use crate::output::plot::Tone;
+use crate::plot::Tone;
 use maud::{Markup, html};
 
 /// Top of the page.

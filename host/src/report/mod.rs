@@ -52,7 +52,7 @@ use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;
 use crate::motion::{Motion, Split};
 use crate::output::number::hex;
-use crate::output::plot::Tone;
+use crate::plot::Tone;
 use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 

@@ -3,8 +3,8 @@
 use super::page::{Section, document, table};
 use crate::diagnose::{LogOutcome, OutcomeValue};
 use crate::output::number::{exact, mrad, short};
-use crate::output::plot::{Chart, Curve, Tone};
 use crate::output::table::{TableColumn, csv_of, or_empty, table_of, within_width};
+use crate::plot::{Chart, Curve, Tone};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 

@@ -4,7 +4,7 @@ use super::{
     Report, candidates, closed_loop, failures, headline, parameters, provenance, remains,
     signatures, traces, waterfall,
 };
-use crate::output::plot;
+use crate::plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Dark colours and layout; screen, phone and paper.

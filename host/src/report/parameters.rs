@@ -7,7 +7,7 @@ use crate::diagnose::names::effect_name;
 use crate::effects::parameter;
 use crate::fitting::FittedValue;
 use crate::output::number::{interval, short, unit};
-use crate::output::plot;
+use crate::plot;
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

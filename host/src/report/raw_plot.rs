@@ -3,7 +3,7 @@
 use super::page::{Section, document};
 use crate::log::{RawLog, time_si};
 use crate::output::number::{exact, short};
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use maud::html;
 
 /// Width and height of a chart, px.

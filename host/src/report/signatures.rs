@@ -6,7 +6,7 @@ use crate::diagnose::FittedEffect;
 use crate::effects::signature::{Signature, signature};
 use crate::effects::{Axis, Effect, named, on_axis};
 use crate::output::number::given;
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

@@ -5,7 +5,7 @@ use super::{AFTER, BEFORE, FLOOR, MEASURED, Report};
 use crate::compare::{Comparison, SignalError, Trace};
 use crate::model::MeasuredSignal;
 use crate::output::number::{mrad, short};
-use crate::output::plot::{Axes, Scale, Tone, span};
+use crate::plot::{Axes, Scale, Tone, span};
 use maud::{Markup, html};
 
 /// Charts that are open from the start; the others wait behind their titles.

@@ -8,7 +8,7 @@ use crate::compare::Comparison;
 use crate::diagnose::{BudgetedPart, MotionError};
 use crate::model::MeasuredSignal;
 use crate::output::number::{mrad, percent};
-use crate::output::plot::{Bar, largest};
+use crate::plot::{Bar, largest};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {

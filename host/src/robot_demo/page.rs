@@ -3,7 +3,7 @@
 use super::run::RobotDemo;
 use crate::deploy::rehearsal::{AttemptSample, BalanceAttempt, STANDS_S};
 use crate::output::number::exact;
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use crate::report::page::{Section, document, table};
 use maud::{Markup, html};
 

@@ -6,7 +6,7 @@ use super::sweep::{Level, Sweep};
 use super::{Figures, share_interval};
 use crate::error::Result;
 use crate::output::number::given;
-use crate::output::plot::{Chart, Curve, Tone, svg_file};
+use crate::plot::{Chart, Curve, Tone, svg_file};
 use std::path::Path;
 
 /// Colours of a chart's curves.

@@ -2,8 +2,8 @@
 
 use super::ControllerTrial;
 use crate::cli::show;
-use handstand::output::plot::heat_map;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
+use handstand::plot::heat_map;
 use handstand::study::LoopCondition;
 use handstand::synth::controllers::ControllerDesign;
 

@@ -5,7 +5,7 @@ use crate::compare::{Failure, SignalError};
 use crate::lab::reply::LabError;
 use crate::lab::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation};
 use crate::output::number::{mrad, percent, short};
-use crate::output::plot::{Bar, Tone};
+use crate::plot::{Bar, Tone};
 use maud::{Markup, html};
 
 /// The page.

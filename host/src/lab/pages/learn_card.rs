@@ -8,7 +8,7 @@ use crate::lab::session::{
     value_name,
 };
 use crate::output::number::short;
-use crate::output::plot::{Chart, Curve, Tone};
+use crate::plot::{Chart, Curve, Tone};
 use crate::report::signature_chart;
 use maud::{Markup, html};
 

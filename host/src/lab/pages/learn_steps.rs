@@ -4,7 +4,7 @@ use super::{in_milli, values};
 use crate::error::Result;
 use crate::lab::session::{LabSession, SavedSession, SavedStep, SessionEvaluation};
 use crate::output::number::{NONE, percent};
-use crate::output::plot::{Bar, Tone, largest};
+use crate::plot::{Bar, Tone, largest};
 use maud::{Markup, html};
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! The page around the scene.
 
 use super::scene::Scene;
-use crate::output::plot;
+use crate::plot;
 use crate::report::page::self_contained;
 use maud::{Markup, PreEscaped, html as markup};
 

@@ -52,7 +52,7 @@ pub(super) fn document(title: &str, (width, height): (f64, f64), drawn: &Markup)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::plot::Tone;
+    use crate::plot::Tone;
 
     /// A browser reads a file of SVG as XML, in which a bare `<` or `&` is an error.
     #[test]

@@ -7,8 +7,10 @@ use std::path::Path;
 
 /// The text that a table came from, and its name for errors.
 #[derive(Debug)]
-pub(crate) struct TomlSource<'a> {
+pub struct TomlSource<'a> {
+    /// All of it.
     pub text: &'a str,
+    /// The file as the user named it.
     pub file: &'a Path,
 }
 

@@ -79,7 +79,7 @@ fn framed(cells: &BrailleGrid, chart: &Chart, x: (f64, f64), y: (f64, f64)) -> S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::plot::Curve;
+    use crate::plot::Curve;
 
     #[test]
     fn a_rising_line_goes_from_the_lower_left_to_the_upper_right() {

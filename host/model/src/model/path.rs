@@ -156,7 +156,7 @@ impl ParameterPath {
     }
 
     /// The effect's parameter, of the value of an effect.
-    pub(crate) fn parameter(&self) -> Option<&'static effects::Parameter> {
+    pub fn parameter(&self) -> Option<&'static effects::Parameter> {
         let ParameterPath::Effect {
             id,
             parameter,

@@ -71,7 +71,7 @@ fn exported_models_come_back() {
         "bus_servo",
         "mx106_drop",
     ] {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/{name}.toml"));
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/{name}.toml"));
         let model = Model::load(&file).unwrap();
         let (_, back) = imported(&to_mjcf(&model).text, &[]);
         assert_same(&model, &back, true);

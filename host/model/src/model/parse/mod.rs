@@ -30,7 +30,7 @@ const GRAVITY: Limits = Limits::within(0.0, 100.0);
 const ONE_TURN: Limits = Limits::within(-TAU, TAU);
 /// A step beyond 0.1 s resolves no servo; one below 10 us only takes time.
 /// What an integration step may be, s.
-pub(crate) const STEP_S: Limits = Limits::within(1e-5, 0.1);
+pub const STEP_S: Limits = Limits::within(1e-5, 0.1);
 
 /// Reads a whole model; `file` only names it in errors.
 ///

@@ -18,8 +18,9 @@ use std::ops::Range;
 use toml_edit::{Item, TableLike, Value};
 
 /// One table of the file, named for messages: `[rig]`, `[[link]] 2`.
-pub(crate) struct Table<'a> {
+pub struct Table<'a> {
     source: &'a TomlSource<'a>,
+    /// How messages call it.
     pub name: String,
     items: &'a dyn TableLike,
     span: Option<Range<usize>>,

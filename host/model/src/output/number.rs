@@ -1,10 +1,10 @@
 //! Numbers as people read them.
 
 /// Stands for a value there is none of.
-pub(crate) const NONE: &str = "–";
+pub const NONE: &str = "–";
 
 /// Three significant digits; `–` for what is no number.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     special(value).unwrap_or_else(|| significant(value, 3))
 }
 
@@ -32,7 +32,7 @@ pub fn hex(bytes: impl AsRef<[u8]>) -> String {
 }
 
 /// A value that was chosen, not measured: as [`short`], without zeros that claim precision.
-pub(crate) fn given(value: f64) -> String {
+pub fn given(value: f64) -> String {
     let text = short(value);
     let (digits, power) = text.split_at(text.find('e').unwrap_or(text.len()));
     match digits.contains('.') {
@@ -83,7 +83,7 @@ pub fn percent(share: f64) -> String {
 }
 
 /// A value and the ends of its interval, all to the decimals that the interval's width deserves.
-pub(crate) fn interval(value: f64, low: f64, high: f64) -> [String; 3] {
+pub fn interval(value: f64, low: f64, high: f64) -> [String; 3] {
     let width = high - low;
     if !(width > 0.0 && width.is_finite() && value.is_finite()) {
         return [value, low, high].map(short);
@@ -99,13 +99,13 @@ pub(crate) fn interval(value: f64, low: f64, high: f64) -> [String; 3] {
 }
 
 /// "0.0821 N m (0.0794 to 0.0851)".
-pub(crate) fn measured(value: f64, low: f64, high: f64, unit: &str) -> String {
+pub fn measured(value: f64, low: f64, high: f64, unit: &str) -> String {
     let [value, low, high] = interval(value, low, high);
     format!("{} ({low} to {high})", with_unit(&value, unit))
 }
 
 /// A number and its unit: "0.5 rad"; a pure number stands alone.
-pub(crate) fn with_unit(number: &str, unit: &str) -> String {
+pub fn with_unit(number: &str, unit: &str) -> String {
     match crate::output::number::unit(unit) {
         "" => number.to_string(),
         unit => format!("{number} {unit}"),
@@ -113,7 +113,7 @@ pub(crate) fn with_unit(number: &str, unit: &str) -> String {
 }
 
 /// A unit as written behind a number: nothing for a pure number.
-pub(crate) fn unit(unit: &str) -> &str {
+pub fn unit(unit: &str) -> &str {
     if unit == "1" { "" } else { unit }
 }
 

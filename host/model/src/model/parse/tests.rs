@@ -120,7 +120,7 @@ fn columns_count_characters_not_bytes() {
 
 #[test]
 fn every_model_that_comes_along_is_read() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

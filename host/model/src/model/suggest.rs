@@ -72,7 +72,7 @@ const SUFFIXES: &[(&str, &str)] = &[
 ];
 
 /// A key's stem and the unit its suffix names.
-pub(crate) fn split_unit(key: &str) -> Option<(&str, &'static str)> {
+pub fn split_unit(key: &str) -> Option<(&str, &'static str)> {
     SUFFIXES
         .iter()
         .find_map(|(suffix, unit)| key.strip_suffix(suffix).map(|stem| (stem, *unit)))

@@ -82,7 +82,7 @@ impl Reason for PlainReason {
 }
 
 /// A reason in words alone.
-pub(crate) fn words(what: impl Into<String>, remedy: impl Into<String>) -> impl Reason {
+pub fn words(what: impl Into<String>, remedy: impl Into<String>) -> impl Reason {
     PlainReason {
         what: what.into(),
         remedy: remedy.into(),
@@ -222,11 +222,4 @@ fn of_system(path: &Path, action: &str, kind: ErrorKind) -> Option<Cow<'static, 
         ("read", ErrorKind::PermissionDenied) => "allow yourself to read it".into(),
         _ => return None,
     })
-}
-
-impl miette::Diagnostic for Error {
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.remedy()
-            .map(|remedy| Box::new(remedy) as Box<dyn fmt::Display>)
-    }
 }

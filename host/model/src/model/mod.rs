@@ -16,10 +16,10 @@ mod parse;
 mod path;
 mod pose;
 mod rate_sensor;
-pub(crate) mod reader;
+pub mod reader;
 mod reason;
 mod rig;
-pub(crate) mod source;
+pub mod source;
 pub mod suggest;
 mod toml_reason;
 mod unit;
@@ -28,7 +28,7 @@ pub use columns::{ArmFigures, Column, ColumnMean, JointColumns, LogColumns, Meas
 pub use field::{JointField, LinkField};
 pub use joint::{Drive, Joint, Motor, effect_on};
 pub use limits::Limits;
-pub(crate) use parse::STEP_S;
+pub use parse::STEP_S;
 pub use path::ParameterPath;
 pub use pose::{hanging, upright};
 pub use rate_sensor::RateSensor;
@@ -279,7 +279,7 @@ impl Model {
     }
 
     /// Adds an effect of the library at a joint, if there is one of this id.
-    pub(crate) fn add_effect(&mut self, id: &str, joint: usize, values: Vec<f64>) {
+    pub fn add_effect(&mut self, id: &str, joint: usize, values: Vec<f64>) {
         let named = effects::named(id);
         let effect = named.and_then(|effect| effect_on(effect, Some(joint), &self.joints));
         self.effects.extend(effect.map(|effect| EffectInstance {

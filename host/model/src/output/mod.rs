@@ -3,7 +3,6 @@
 
 pub mod append_file;
 pub mod number;
-pub mod plot;
 mod shortened;
 pub mod table;
 
