@@ -16,7 +16,6 @@ pub mod first_model;
 pub mod fitting;
 pub mod lab;
 pub mod link;
-pub mod log;
 pub mod paper;
 pub mod plot;
 pub mod report;
@@ -27,5 +26,6 @@ pub mod study;
 pub mod synth;
 pub mod sysid;
 
+pub use handstand_logs as log;
 pub use handstand_model::{Error, Model, Place, Result};
 pub use handstand_model::{dynamics, effects, error, model, motion, output};

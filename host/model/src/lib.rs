@@ -6,6 +6,8 @@
 pub mod dynamics;
 pub mod effects;
 pub mod error;
+#[cfg(any(test, feature = "testkit"))]
+pub mod fixture;
 pub mod model;
 pub mod motion;
 pub mod output;

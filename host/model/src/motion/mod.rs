@@ -1,8 +1,6 @@
 //! One motion: samples recorded without interruption, in SI and in the model's angle convention.
 
 mod excerpts;
-#[cfg(any(test, feature = "testkit"))]
-pub mod fixture;
 mod shift;
 mod split;
 

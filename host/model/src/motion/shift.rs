@@ -92,7 +92,7 @@ fn moved(time_s: &[f64], values: &[f64], shift_s: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::motion::fixture::motion;
+    use crate::fixture::motion;
 
     #[test]
     fn a_shift_moves_a_column_and_shortens_the_motion() {

@@ -64,7 +64,7 @@ pub fn split(mut motions: Vec<Motion>, explicit_holdout: Vec<Motion>) -> Split {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::fixture::motion;
+    use crate::fixture::motion;
 
     #[test]
     fn holds_out_the_last_third() {

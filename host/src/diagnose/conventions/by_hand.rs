@@ -285,8 +285,8 @@ fn is_off(model: &Model, motion: &Motion, samples: &Range<usize>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::tests::fixture;
     use crate::model::Drive;
+    use handstand_model::fixture;
 
     const PERIOD_S: f64 = 0.02;
     const NOISE_RAD: f64 = 1e-3;

@@ -117,7 +117,7 @@ fn best(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::tests::fixture::{columns, model, motion, position_drive};
+    use handstand_model::fixture::{columns, model, motion, position_drive};
 
     #[test]
     fn a_motion_shorter_than_every_shift_is_shifted_by_none() {

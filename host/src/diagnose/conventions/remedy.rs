@@ -258,7 +258,7 @@ pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::tests::fixture::{columns, model, position_drive};
+    use handstand_model::fixture::{columns, model, position_drive};
 
     fn proposed(declared: &str, spacing_s: f64) -> Vec<&'static str> {
         let mut model = model(position_drive(), columns());

@@ -1,0 +1,51 @@
+//! Measurement logs: one reader for every format, quality check, training and held-out motions.
+
+mod bam;
+pub mod cdr;
+mod cell;
+pub mod check;
+mod csv;
+mod folder;
+mod foreign;
+mod format;
+mod header;
+pub mod init;
+mod iso;
+mod layout;
+mod lines;
+mod log_set;
+pub mod mcap_messages;
+mod merge;
+mod raw;
+mod read;
+mod reading_limit;
+mod reason;
+mod request;
+mod row;
+mod row_reader;
+mod same_rows;
+mod short;
+mod standard_input;
+mod table;
+mod visit;
+mod write;
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+use handstand_model::{error, model, motion, output};
+
+pub use bam::BenchFigures;
+pub use check::{LogFinding, Proof, Severity, check};
+pub use folder::{expanded, unfolded};
+pub use format::LogFormat;
+pub use init::time_si;
+pub use log_set::LogSet;
+pub use merge::{Alignment, MergePlan, MergedLog, merge};
+pub use raw::RawLog;
+pub use read::{LEAST_ROWS, read, read_with_findings};
+pub use reason::LogReason;
+pub use request::LogRequest;
+pub use row::{Fields, LogRow};
+pub use visit::{FileFacts, visit};
+pub use write::to_csv;
