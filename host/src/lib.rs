@@ -7,7 +7,6 @@
 //! `deploy`; `cli` sits on top and nothing depends on it. Every layer may read `error`, and
 //! `output`, which writes files, numbers and plots.
 
-pub mod challenge;
 pub mod compare;
 pub mod deploy;
 pub mod diagnose;
@@ -26,6 +25,7 @@ pub mod study;
 pub mod synth;
 pub mod sysid;
 
+pub use handstand_challenge as challenge;
 pub use handstand_logs as log;
 pub use handstand_model::{Error, Model, Place, Result};
 pub use handstand_model::{dynamics, effects, error, model, motion, output};

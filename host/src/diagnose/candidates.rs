@@ -164,3 +164,34 @@ fn visible(needs: Needs, model: &Model, motions: &[Motion], joint: Option<usize>
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use handstand_model::fixture::motion;
+    use std::path::Path;
+
+    /// What a rate sensor may do is offered where its joint has one beside the one of its angle.
+    #[test]
+    fn rate_sensors_are_doubted_where_they_are() {
+        let motion = Motion {
+            rate_rad_s: vec![Some(vec![0.1; 50])],
+            ..motion("swing", 50)
+        };
+        let offered = |gyro: &str| {
+            let text = format!(
+                "[rig]\nname = \"p\"\n[[link]]\ncom_m = 0.1\nmass_kg = 0.2\n\
+                 inertia_kg_m2 = 0.008\n[[joint]]\ndrive = \"passive\"\n\
+                 [log]\ntime = {{ column = \"t\", unit = \"s\" }}\n[[log.joint]]\n\
+                 position = {{ column = \"q\", unit = \"rad\" }}\n{gyro}"
+            );
+            let model = Model::parse(&text, Path::new("p.toml")).unwrap();
+            let found = candidates(&model, std::slice::from_ref(&motion), &[]);
+            let own = |id: &str| found.iter().any(|c| c.to_string() == format!("{id}@1"));
+            ["time_offset", "rate_bias", "rate_scale", "rate_lag"].map(own)
+        };
+        let gyro = "gyro = { column = \"w\", unit = \"rad/s\" }\n";
+        assert_eq!(offered(gyro), [true; 4]);
+        assert_eq!(offered(""), [false; 4]);
+    }
+}

@@ -160,7 +160,15 @@ fn difference_noise(differences: &[Vec<f64>]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sysid::generate::noise as white;
+    use crate::sim::closed_loop::normal;
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+
+    /// Independent normal numbers of this standard deviation.
+    fn white(samples: usize, deviation: f64, seed: u64) -> Vec<f64> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        (0..samples).map(|_| deviation * normal(&mut rng)).collect()
+    }
 
     fn estimated(readings: &[f64], resolution: Option<f64>) -> Noise {
         let time_s: Vec<f64> = (0..readings.len()).map(|k| 0.01 * k as f64).collect();

@@ -3,11 +3,9 @@
 use crate::error::Result;
 use crate::model::{Angles, Model};
 use crate::sim::closed_loop::{
-    Clock, ClosedLoop, Commands, Controller, Drives, Sensor, StabilityCriteria,
+    Clock, ClosedLoop, Commands, Controller, Drives, KnownEquilibrium, Sensor, StabilityCriteria,
 };
-use crate::synth::controllers::{
-    ControllerDesign, DesignModel, KnownEquilibrium, LinearLaw, ServoLag, Through,
-};
+use crate::synth::controllers::{ControllerDesign, DesignModel, LinearLaw, ServoLag, Through};
 use crate::synth::{self, Weight};
 
 /// What is run.

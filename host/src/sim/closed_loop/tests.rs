@@ -1,6 +1,5 @@
 use super::*;
 use crate::model::Model;
-use crate::synth::controllers::KnownEquilibrium;
 use std::path::Path;
 
 mod drives;

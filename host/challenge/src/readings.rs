@@ -217,7 +217,7 @@ fn pendulum_toml(link: [f64; 3], friction: [f64; 2], secrets: &[HiddenEffect]) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Motion;
+    use handstand_model::motion::Motion;
 
     fn angles() -> Vec<f64> {
         (0..4000).map(|k| 1e-3 * f64::from(k)).collect()
@@ -243,12 +243,12 @@ mod tests {
         let bench = read_pendulum(3, Readings::Steps);
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("m.toml");
-        let model = crate::Model::parse(&bench.true_model_toml, &path).unwrap();
+        let model = handstand_model::Model::parse(&bench.true_model_toml, &path).unwrap();
         for log in &bench.logs {
             let file = dir.path().join(&log.name);
             std::fs::write(&file, &log.csv).unwrap();
-            let request = crate::log::LogRequest::whole(file);
-            let read: Vec<Motion> = crate::log::read(&[request], &model.log).unwrap();
+            let request = handstand_logs::LogRequest::whole(file);
+            let read: Vec<Motion> = handstand_logs::read(&[request], &model.log).unwrap();
             let angles = &read[0].position_rad[0];
             assert!(angles[0] > 1.2);
             assert!(

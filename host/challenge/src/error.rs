@@ -1,6 +1,6 @@
 //! Why a challenge is refused.
 
-use crate::error::Reason;
+use handstand_model::error::Reason;
 use std::borrow::Cow;
 use std::path::PathBuf;
 

@@ -1,6 +1,6 @@
 //! Angle compensation: a controller that knows where the robot balances.
 
-use crate::sim::closed_loop::{Controller, Measurement};
+use super::{Controller, Measurement};
 
 /// A controller that is given deviations from the equilibrium instead of the pose.
 #[derive(Debug)]

@@ -4,7 +4,7 @@
 //! open it.
 
 use super::error::ChallengeError;
-use crate::output::number::hex;
+use handstand_model::output::number::hex;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

@@ -4,7 +4,7 @@ use super::regulator::RobotRegulator;
 use super::robot::{Laws, Robot};
 use super::truth::Arm;
 use super::*;
-use crate::error::Place;
+use handstand_model::error::Place;
 
 const RELEASED: DriveCommand = DriveCommand {
     duty: 0.0,

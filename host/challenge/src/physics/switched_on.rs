@@ -1,7 +1,7 @@
 //! Which law each effect of the library is here.
 
 use super::Physics;
-use crate::challenge::moving_base::Base;
+use crate::moving_base::Base;
 
 /// How hard the flanks of a gear with play are: natural frequency of the motor against them, rad/s,
 /// and damping ratio. Knocks last some milliseconds, as those of steel on plastic do.

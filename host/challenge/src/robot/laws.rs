@@ -1,9 +1,9 @@
 //! The laws of the chain and its joints.
 
 use super::{Joints, LINKS};
-use crate::challenge::history::History;
-use crate::challenge::moving_base::{Base, BaseState, LinksOnBase};
-use crate::challenge::physics::{DriveCommand, GRAVITY_M_S2, Physics};
+use crate::history::History;
+use crate::moving_base::{Base, BaseState, LinksOnBase};
+use crate::physics::{DriveCommand, GRAVITY_M_S2, Physics};
 
 /// The robot's laws: what each joint and its link is, how far the next joint is, and how it hangs.
 #[derive(Debug, Clone)]

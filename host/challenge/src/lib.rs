@@ -36,8 +36,8 @@ pub use readings::{READINGS, Readings, read_arm, read_pendulum};
 pub use score::{ChallengeScore, ScoredValue, score};
 pub use seal::{ChallengeAnswer, seal, unseal};
 
-use crate::error::{Error, Result};
 use bench_arm::{BenchArm, STALL_NM};
+use handstand_model::error::{Error, Result};
 use hidden_effect::HiddenEffect;
 use motion::{ArmRecording, record};
 use physics::{Mount, Physics};

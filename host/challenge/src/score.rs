@@ -1,8 +1,8 @@
 //! A model against the answer of its challenge.
 
 use super::seal::{ChallengeAnswer, unseal};
-use crate::error::{Error, Place, Result};
-use crate::model::{EffectInstance, Model};
+use handstand_model::error::{Error, Place, Result};
+use handstand_model::model::{EffectInstance, Model};
 use serde::Serialize;
 use std::path::Path;
 
