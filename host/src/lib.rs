@@ -7,12 +7,10 @@
 //! `deploy`; `cli` sits on top and nothing depends on it. Every layer may read `error`, and
 //! `output`, which writes files, numbers and plots.
 
-pub mod compare;
 pub mod deploy;
 pub mod diagnose;
 pub mod experiment;
 pub mod first_model;
-pub mod fitting;
 pub mod lab;
 pub mod link;
 pub mod paper;
@@ -20,7 +18,6 @@ pub mod plot;
 pub mod report;
 #[cfg(feature = "virtual-cm5")]
 pub mod robot_demo;
-pub mod sim;
 pub mod study;
 pub mod synth;
 pub mod sysid;
@@ -29,3 +26,4 @@ pub use handstand_challenge as challenge;
 pub use handstand_logs as log;
 pub use handstand_model::{Error, Model, Place, Result};
 pub use handstand_model::{dynamics, effects, error, model, motion, output};
+pub use handstand_sim::{compare, fitting, sim};

@@ -4,7 +4,7 @@ use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::values::kinds_of_values;
 use crate::fitting::{
-    Candidate, Fit, FitOptions, PredictionChange, ProjectedResidual, Sizes, changes, fit, residuals,
+    Candidate, Fit, FitOptions, ProjectedResidual, Sizes, changes, fit, residuals,
 };
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -195,23 +195,6 @@ impl Evaluator<'_> {
         let (weights, share) = target.span(&[at.residuals.less(&moved)])?;
         let weight = weights[0];
         Some((steps.into_iter().map(|step| weight * step).collect(), share))
-    }
-}
-
-impl ProjectedResidual<'_> {
-    /// The values with which a candidate, of whose starts these are the changes, makes most of so
-    /// many times this, and the share of it that it makes, squared.
-    fn promise(&self, changes: &[PredictionChange], times: f64) -> Option<(Vec<f64>, f64)> {
-        let guess = self.guesses(changes).into_iter().next()?;
-        let values = guess.values.iter().zip(guess.candidate.parameters());
-        let values = values.map(|(value, parameter)| match parameter.off {
-            Some(off) if off.is_finite() => {
-                let (low, high) = parameter.bounds;
-                (off + times * (value - off)).clamp(low, high)
-            }
-            _ => *value,
-        });
-        Some((values.collect(), guess.gain / self.size()))
     }
 }
 

@@ -2,10 +2,10 @@
 //! `virtual-cm5`).
 //!
 //! The simulation itself is the crate `handstand-cm5-sim`. [`SimLink`] makes its serial ports
-//! links, [`sim::Live`] is the plant behind its servos, and [`set_up`] makes a bus with a robot
+//! links, [`Live`] is the plant behind its servos, and [`set_up`] makes a bus with a robot
 //! from a [`BusSpec`].
 //!
-//! [`sim::Live`]: crate::sim::Live
+//! [`Live`]: crate::sim::Live
 
 mod attitude;
 mod link;

@@ -98,7 +98,7 @@ fn robot(spec: &RobotSpec, model: Model, ids: &[u8]) -> Result<Robot> {
     let leans = angle_rad.iter_mut().zip(&spec.lean_rad);
     leans.for_each(|(angle, lean)| *angle += lean);
     let live = Live::new(&with_motors(model), &angle_rad)?;
-    let mut robot = Robot::new(Box::new(live), driven.into_iter().zip(servos));
+    let mut robot = Robot::new(Box::new(LivePlant(live)), driven.into_iter().zip(servos));
     robot.set_lag(spec.lag_s);
     robot.set_gyro(spec.gyro);
     if spec.start == Start::Held {
@@ -121,32 +121,36 @@ fn with_motors(mut model: Model) -> Model {
     model
 }
 
-impl Plant for Live {
+/// A model in real time as the plant of simulated servos.
+#[derive(Debug)]
+struct LivePlant(Live);
+
+impl Plant for LivePlant {
     fn joint_count(&self) -> usize {
-        Live::joint_count(self)
+        self.0.joint_count()
     }
 
     fn delay_s(&self, joint: usize) -> f64 {
-        Live::delay_s(self, joint)
+        self.0.delay_s(joint)
     }
 
     fn set_duty(&mut self, joint: usize, duty: Option<f64>, supply_v: f64) {
-        self.command(joint, duty, supply_v);
+        self.0.command(joint, duty, supply_v);
     }
 
     fn advance(&mut self, span_s: f64) {
-        Live::advance(self, span_s);
+        self.0.advance(span_s);
     }
 
     fn angle_rad(&self, joint: usize) -> f64 {
-        Live::angle_rad(self, joint)
+        self.0.angle_rad(joint)
     }
 
     fn speed_rad_s(&self, joint: usize) -> f64 {
-        Live::speed_rad_s(self, joint)
+        self.0.speed_rad_s(joint)
     }
 
     fn shaft(&self, joint: usize) -> (f64, f64) {
-        Live::shaft(self, joint)
+        self.0.shaft(joint)
     }
 }
