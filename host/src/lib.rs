@@ -8,9 +8,6 @@
 //! `output`, which writes files, numbers and plots.
 
 pub mod deploy;
-pub mod diagnose;
-pub mod experiment;
-pub mod first_model;
 pub mod lab;
 pub mod link;
 pub mod paper;
@@ -23,6 +20,7 @@ pub mod synth;
 pub mod sysid;
 
 pub use handstand_challenge as challenge;
+pub use handstand_diagnose::{diagnose, experiment, first_model};
 pub use handstand_logs as log;
 pub use handstand_model::{Error, Model, Place, Result};
 pub use handstand_model::{dynamics, effects, error, model, motion, output};

@@ -19,7 +19,7 @@ pub const LOGS: &str = "LOG...";
 pub const HELD_OUT: &str = "HELD_OUT...";
 
 /// Explanations named in a sentence; the rest are counted.
-pub(crate) const SHOWN: usize = 4;
+pub const SHOWN: usize = 4;
 
 /// Adds summary, next steps and warnings.
 pub(super) fn complete(diagnosis: &mut Diagnosis) {
@@ -42,7 +42,7 @@ pub(super) fn complete(diagnosis: &mut Diagnosis) {
 }
 
 /// The verdict as a sentence.
-pub(crate) fn headline(diagnosis: &Diagnosis) -> String {
+pub fn headline(diagnosis: &Diagnosis) -> String {
     let names = joined(&diagnosis.effects);
     match diagnosis.verdict {
         Verdict::Nominal => "The model already explains the measurement.".into(),
@@ -105,7 +105,7 @@ fn wrong_values(wrong: &[WrongValue]) -> String {
 }
 
 /// "0.2 -> 0.246 kg (0.244 to 0.248)".
-pub(crate) fn change(wrong: &WrongValue) -> String {
+pub fn change(wrong: &WrongValue) -> String {
     let fitted = &wrong.fitted;
     let to = measured(fitted.value, fitted.low, fitted.high, &fitted.unit);
     format!("{} -> {to}", short(wrong.given))
@@ -127,7 +127,7 @@ fn share(diagnosis: &Diagnosis) -> Option<String> {
 }
 
 /// What an explanation changes: "A at joint 1 and B", "another value of the mass of link 1".
-pub(crate) fn explained_by(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
+pub fn explained_by(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
     match effects {
         [] => {
             let paths = wrong
@@ -247,7 +247,7 @@ fn summary(diagnosis: &Diagnosis) -> Vec<String> {
 }
 
 /// What becomes of the error, in a unit of which one SI unit has so many.
-pub(crate) fn error_line(diagnosis: &Diagnosis, (unit, per_si): (&str, f64)) -> String {
+pub fn error_line(diagnosis: &Diagnosis, (unit, per_si): (&str, f64)) -> String {
     let error = &diagnosis.error;
     let motions = if error.held_out { "held-out" } else { "fitted" };
     let [before, after, floor] =

@@ -22,7 +22,7 @@ mod logs;
 mod longer_runs;
 mod measured_value;
 mod multistart;
-pub(crate) mod names;
+pub mod names;
 mod one_sided;
 mod options;
 mod pipeline;

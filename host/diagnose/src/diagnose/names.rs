@@ -5,12 +5,12 @@ use crate::effects;
 use crate::model::{JointField, LinkField, ParameterPath};
 
 /// "Coulomb friction at joint 1".
-pub(crate) fn effect_name(effect: &FittedEffect) -> String {
+pub fn effect_name(effect: &FittedEffect) -> String {
     at_joint(&effect.kind, &effect.title, effect.joint)
 }
 
 /// "Coulomb friction at joint 1", "delay of the drive at all driven joints", "tilt of the base".
-pub(crate) fn at_joint(kind: &str, title: &str, joint: Option<usize>) -> String {
+pub fn at_joint(kind: &str, title: &str, joint: Option<usize>) -> String {
     match (joint, effects::at_all(kind)) {
         (Some(joint), _) => format!("{title} at joint {joint}"),
         (None, "") => title.to_string(),
@@ -20,7 +20,7 @@ pub(crate) fn at_joint(kind: &str, title: &str, joint: Option<usize>) -> String 
 
 /// A value of the model by its address, in words: "the inertia of link 1", "viscous friction at
 /// joint 1", "gap_rad of backlash of the gear at joint 1"; the text itself where it is no address.
-pub(crate) fn value_name(path: &str) -> String {
+pub fn value_name(path: &str) -> String {
     match path.parse() {
         Ok(ParameterPath::Link { index, field }) => {
             let what = match field {
@@ -62,7 +62,8 @@ pub(crate) fn joined(effects: &[FittedEffect]) -> String {
     listed(effects.iter().map(effect_name).collect())
 }
 
-pub(crate) fn listed(mut names: Vec<String>) -> String {
+/// Names in a row: "A, B and C".
+pub fn listed(mut names: Vec<String>) -> String {
     match (names.pop(), names.as_slice()) {
         (None, _) => "nothing".into(),
         (Some(last), []) => last,
