@@ -1,6 +1,6 @@
 //! Says which commit this is built from, and whether simavr is there, as the crate over it found.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn main() {
@@ -15,14 +15,11 @@ fn main() {
 /// Version of the project, with the commit where one is known, asked again when a source that is
 /// built into the measuring program or the commit changes.
 fn version() -> String {
-    for sources in [
-        "src",
-        "../host/src",
-        "../host/cm5-sim/src",
-        "../shared/src",
-        "../firmware/src",
-    ] {
-        println!("cargo::rerun-if-changed={sources}");
+    let crates = std::fs::read_dir("../host").into_iter().flatten().flatten();
+    let crates = crates.map(|entry| entry.path().join("src"));
+    let others = ["src", "../host/src", "../shared/src", "../firmware/src"].map(PathBuf::from);
+    for sources in crates.filter(|folder| folder.is_dir()).chain(others) {
+        println!("cargo::rerun-if-changed={}", sources.display());
     }
     let moves = git(&["rev-parse", "--git-path", "logs/HEAD"]);
     // What is named and not there would be built again every time.

@@ -10,7 +10,7 @@ fn root() -> PathBuf {
     root.canonicalize().unwrap()
 }
 
-/// A block of a Markdown page whose fence names a file: ```` ```rust host/src/effects/new.rs ````.
+/// A block of a Markdown page whose fence names a file: ```` ```rust host/model/src/effects/new.rs ````.
 struct Block {
     /// `rust` is a new file, `diff` a change of one.
     kind: String,
@@ -89,7 +89,7 @@ fn the_worked_examples_of_contributing_compile() {
     let blocks = blocks(&page);
     let files: BTreeSet<&str> = blocks.iter().map(|block| block.file.as_str()).collect();
     for list in [
-        "host/src/effects/mod.rs",
+        "host/model/src/effects/mod.rs",
         "host/src/synth/controllers/mod.rs",
     ] {
         assert!(files.contains(list), "no example changes {list}: {files:?}");

@@ -180,7 +180,7 @@ mod tests {
         };
         let offered = |gyro: &str| {
             let text = format!(
-                "[rig]\nname = \"p\"\n[[link]]\ncom_m = 0.1\nmass_kg = 0.2\n\
+                "[rig]\nname = \"p\"\nangle_zero = \"hanging\"\n[[link]]\ncom_m = 0.1\nmass_kg = 0.2\n\
                  inertia_kg_m2 = 0.008\n[[joint]]\ndrive = \"passive\"\n\
                  [log]\ntime = {{ column = \"t\", unit = \"s\" }}\n[[log.joint]]\n\
                  position = {{ column = \"q\", unit = \"rad\" }}\n{gyro}"
