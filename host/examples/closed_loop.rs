@@ -58,6 +58,7 @@ fn request(robot: &Model) -> Request {
         pose_rad: upright(robot),
         q: Weight::Scalar(100.0),
         r: Weight::Scalar(1.0),
+        integral: None,
         time: Time::Sampled {
             ts_s: PERIOD_S,
             delay_s: None,

@@ -30,6 +30,7 @@ pub fn regulator() -> Result<Design> {
         pose_rad: upright(&robot),
         q: Weight::Scalar(100.0),
         r: Weight::Scalar(1.0),
+        integral: None,
         time: Time::Sampled {
             ts_s: 0.01,
             delay_s: Some(0.01),

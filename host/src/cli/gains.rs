@@ -49,6 +49,10 @@ pub struct GainsArgs {
     /// Weight of the inputs, likewise [default: 1]
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     r: Option<WeightArg>,
+    /// Integral action: weight of the integrals of the driven joints' angles, one number or a list
+    #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["continuous", "lqg", "tune"])]
+    integral: Option<WeightArg>,
     /// Search weights with the largest region under all effects of the model, margins kept
     #[arg(long, conflicts_with_all = ["q", "r", "continuous"])]
     tune: bool,
@@ -228,6 +232,7 @@ impl GainsArgs {
         let given = [
             (self.q.is_some(), "--q"),
             (self.r.is_some(), "--r"),
+            (self.integral.is_some(), "--integral"),
             (self.tune, "--tune"),
             (self.ts != 0.01, "--ts"),
             (self.delay.is_some(), "--delay"),
@@ -251,6 +256,11 @@ impl GainsArgs {
         ];
         let mut names = given.into_iter().filter(|(given, _)| *given);
         names.next().map(|(_, name)| name)
+    }
+
+    /// Whether the gains act on sums of angles.
+    pub(super) fn is_integral(&self) -> bool {
+        self.integral.is_some()
     }
 
     /// Whether files are replaced.

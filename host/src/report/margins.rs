@@ -100,13 +100,18 @@ fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
     lines
 }
 
+/// Rounded to two places; a zero has no sign for people.
+fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0 + 0.0
+}
+
 fn lean_lines(stiffness: &Stiffness, design: &Design) -> Vec<String> {
     let joints = stiffness.lean_per_torque.nrows();
     let said = |lean: Vec<f64>| {
         let each = lean.iter().zip(&design.states[..joints]);
         let each = each.map(|(lean, state)| match state.unit {
-            "rad" => format!("{} {:+.2} deg", state.name, lean.to_degrees()),
-            _ => format!("{} {:+.2} mm", state.name, 1e3 * lean),
+            "rad" => format!("{} {:+.2} deg", state.name, hundredths(lean.to_degrees())),
+            _ => format!("{} {:+.2} mm", state.name, hundredths(1e3 * lean)),
         });
         each.collect::<Vec<String>>().join(", ")
     };

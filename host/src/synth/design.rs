@@ -6,10 +6,11 @@ use super::error::{DesignError, MOST_GROWTH};
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
+use super::integral::{Integral, Sums};
 use super::linearise::{Linearisation, linearise};
 use super::omitted::OmittedEffect;
 use super::operating_point::input_delay_s;
-use super::quantise::{Ranges, largest_word, power_of_two_above, quantise};
+use super::quantise::{Format, Ranges, largest_word, power_of_two_above, quantise};
 use super::request::{Request, Sensors, Time};
 use super::signal::{Signal, default_limit, input, states};
 use super::system::{Continuous, Discrete};
@@ -36,8 +37,11 @@ pub struct Design {
     pub omitted: Vec<OmittedEffect>,
     /// The plant in continuous time.
     pub plant: Continuous,
-    /// The sampled plant, and the delay it holds, s.
+    /// The sampled plant, and the delay it holds, s. With integral action the sums are states of it,
+    /// between its own and the past inputs.
     pub sampled: Option<(Discrete, f64)>,
+    /// The sums of angles among the states.
+    pub integral: Option<Integral>,
     /// Q and R.
     pub weights: [DMatrix<f64>; 2],
     /// K and what goes with it.
@@ -76,6 +80,8 @@ pub struct Fixed {
     pub ranges: Ranges,
     /// The table.
     pub law: FixedLaw,
+    /// How the caller keeps the sums of angles among the states.
+    pub sums: Option<Sums>,
     /// What rounding costs.
     pub loss: Loss,
 }
@@ -97,19 +103,26 @@ impl Design {
         } = linearise(model, &request.pose_rad)?;
         let (n, m) = plant.b.shape();
         let r = request.r.matrix("R", m, "inputs")?;
+        let integral = request.integral.as_ref();
+        let integral = integral.map(|weight| Integral::of(model, weight));
+        let integral = integral.transpose()?;
         let (gains, sampled, q) = match request.time {
+            Time::Continuous if integral.is_some() => return Err(DesignError::IntegralContinuous),
             Time::Continuous => {
                 let q = request.q.matrix("Q", n, "states")?;
                 (lqr(&plant, &q, &r)?, None, q)
             }
             Time::Sampled { ts_s, delay_s } => {
                 let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
-                let sampled = zoh(&plant, ts_s, delay_s)?;
-                let all = sampled.a.nrows();
-                let size = request.q.size().filter(|size| *size == all).unwrap_or(n);
-                let q = request.q.matrix("Q", size, "states")?;
+                let mut sampled = zoh(&plant, ts_s, delay_s)?;
+                let mut q = weight_of_states(request, n, sampled.a.nrows())?;
+                if let Some(integral) = &integral {
+                    sampled = integral.with_sums(&sampled);
+                    q = integral.weight(&q);
+                }
                 let gains = dlqr(&sampled, &q, &r);
-                let gains = gains.map_err(|error| by_sampling(error, &plant, ts_s))?;
+                let by_sampling = |error| by_sampling(error, &plant, ts_s, integral.is_some());
+                let gains = gains.map_err(by_sampling)?;
                 (gains, Some((sampled, delay_s)), q)
             }
         };
@@ -120,10 +133,12 @@ impl Design {
         let delayed = sampled
             .as_ref()
             .map_or(0, |(sampled, _)| sampled.delayed_inputs);
+        let sums = integral.as_ref().map_or(0, |it| it.joints.len());
         let mut design = Design {
             model: model.name.clone(),
-            states: states(model, &inputs, delayed),
-            x0: point(&request.pose_rad, &u0, delayed),
+            states: states(model, &inputs, integral.as_ref(), delayed),
+            x0: point(&request.pose_rad, sums, &u0, delayed),
+            integral,
             u0,
             omitted,
             poles: poles(&plant.a)?,
@@ -160,10 +175,13 @@ impl Design {
         plant: &Discrete,
         input: Vec<f64>,
     ) -> Result<Fixed, DesignError> {
-        let mut state = request
-            .state_range
-            .diagonal("the range of states", plant.plant_states())?;
+        let own = self.plant.a.nrows();
+        let mut state = request.state_range.diagonal("the range of states", own)?;
         let mut format = request.format.clone();
+        let mut sums = None;
+        if let Some(integral) = &self.integral {
+            sums = Some(self.sums(integral, plant.ts_s, &input, &mut state, &mut format)?);
+        }
         if plant.delayed_inputs > 0 {
             // Past inputs come back in the steps in which they went out.
             let word = largest_word(format.bits);
@@ -173,9 +191,10 @@ impl Design {
             let past = input.iter().zip(&self.u0);
             let past = past.map(|(range, u)| step(&(range + u.abs())));
             let input_step = input_step.unwrap_or_else(|| past.collect());
-            let reach = state.iter().zip(&self.x0);
-            let own = reach.map(|(range, x)| step(&(range + x.abs())));
-            let mut steps = format.state_step.take().unwrap_or_else(|| own.collect());
+            let mut steps = match format.state_step.take() {
+                Some(steps) => steps,
+                None => self.own_steps(&state, word),
+            };
             for _ in 0..plant.delayed_inputs {
                 steps.extend(&input_step);
                 state.extend(&input);
@@ -191,7 +210,47 @@ impl Design {
                 radius: loss.radius_fixed,
             });
         }
-        Ok(Fixed { ranges, law, loss })
+        Ok(Fixed {
+            ranges,
+            law,
+            sums,
+            loss,
+        })
+    }
+
+    /// The sums in fixed point: their ranges and steps join those of the plant's own states.
+    fn sums(
+        &self,
+        integral: &Integral,
+        ts_s: f64,
+        input: &[f64],
+        state: &mut Vec<f64>,
+        format: &mut Format,
+    ) -> Result<Sums, DesignError> {
+        let (own, word) = (self.plant.a.nrows(), largest_word(format.bits));
+        let range = integral.range(&self.gains.k, own, input);
+        let range = range.ok_or(DesignError::IntegralUnused)?;
+        let mut steps = match format.state_step.take() {
+            Some(steps) => steps,
+            None => self.own_steps(state, word),
+        };
+        let (shift, sum_step) = integral.in_words(ts_s, &steps, &range, word);
+        steps.extend(sum_step);
+        state.extend(range);
+        format.state_step = Some(steps);
+        Ok(Sums {
+            first: own,
+            joints: integral.joints.clone(),
+            shift,
+        })
+    }
+
+    /// Powers of two that let the plant's own states reach `range` about the operating point.
+    fn own_steps(&self, range: &[f64], word: f64) -> Vec<f64> {
+        let reach = range.iter().zip(&self.x0);
+        reach
+            .map(|(range, x)| power_of_two_above((range + x.abs()) / word))
+            .collect()
     }
 
     fn estimator(
@@ -228,12 +287,24 @@ impl Design {
     }
 }
 
+/// Q of the plant's own `n` states, or of `all` that there are with past inputs.
+fn weight_of_states(
+    request: &Request,
+    n: usize,
+    all: usize,
+) -> Result<DMatrix<f64>, DesignError> {
+    let whole = |size: &usize| *size == all && request.integral.is_none();
+    let size = request.q.size().filter(whole).unwrap_or(n);
+    request.q.matrix("Q", size, "states")
+}
+
 /// A mode that no input reaches is the sampling time's doing where the inputs reach every mode of
 /// the plant in continuous time.
-fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64) -> DesignError {
+fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64, sums: bool) -> DesignError {
     match error {
         DesignError::Uncontrollable { mode, .. }
-            if mode.mode.pole.norm() <= MOST_GROWTH
+            if !sums
+                && mode.mode.pole.norm() <= MOST_GROWTH
                 && controllability(&plant.a, &plant.b).is_ok_and(|it| it.is_full()) =>
         {
             let fastest = poles(&plant.a).map_or(0.0, |poles| largest(&poles));
@@ -247,10 +318,10 @@ fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64) -> DesignError
     }
 }
 
-/// Angles, speeds of 0, then past inputs.
-fn point(pose_rad: &[f64], inputs: &[f64], delayed: usize) -> Vec<f64> {
+/// Angles, speeds of 0, sums of 0, then past inputs.
+fn point(pose_rad: &[f64], sums: usize, inputs: &[f64], delayed: usize) -> Vec<f64> {
     let mut point = pose_rad.to_vec();
-    point.resize(2 * pose_rad.len(), 0.0);
+    point.resize(2 * pose_rad.len() + sums, 0.0);
     for _ in 0..delayed {
         point.extend(inputs);
     }

@@ -101,6 +101,10 @@ pub enum DesignError {
         least: f64,
         of: &'static str,
     },
+    #[error("integral action sums angles sample by sample, and continuous time has no samples")]
+    IntegralContinuous,
+    #[error("the gains of the integrals are singular: some sum acts on no input")]
+    IntegralUnused,
     #[error("the innovation's covariance is not positive definite")]
     Innovation,
 
@@ -264,6 +268,7 @@ impl DesignError {
                 | E::Entry { .. }
                 | E::Indefinite { .. }
                 | E::NotDefinite { .. }
+                | E::IntegralContinuous
                 | E::WordLength(_)
                 | E::Count { .. }
                 | E::NotPositive { .. }

@@ -15,6 +15,7 @@ mod estimator;
 pub mod export;
 mod fixed_law;
 mod gains;
+mod integral;
 mod joint_slope;
 mod linearise;
 mod loop_figures;
@@ -44,6 +45,7 @@ pub use error::{DesignError, PlantMode, RiccatiRole};
 pub use estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 pub use fixed_law::{FixedLaw, Loss};
 pub use gains::{Gains, continuous_period_s, dlqr, lqr};
+pub use integral::{Integral, Sums};
 pub use linearise::{Linearisation, linearise};
 pub use loop_figures::LoopFigures;
 pub use margins::{

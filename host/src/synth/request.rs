@@ -14,6 +14,8 @@ pub struct Request {
     pub q: Weight,
     /// Weight of the inputs.
     pub r: Weight,
+    /// Weight of the sums of the driven joints' angles, where the law shall have them, 1/(rad s)^2.
+    pub integral: Option<Weight>,
     /// How the gains will run.
     pub time: Time,
     /// Sensors and noise, for an estimator.
@@ -37,6 +39,7 @@ impl Request {
             pose_rad: upright(model),
             q: Weight::Scalar(100.0),
             r: Weight::Scalar(1.0),
+            integral: None,
             time: Time::Sampled {
                 ts_s: 0.01,
                 delay_s: None,

@@ -177,6 +177,13 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Planned> {
             basis,
         });
     }
+    if args.gains.is_integral() {
+        return Err(Error::usage(
+            "the CM-5's plan has no place for the sums of --integral",
+            "leave --law out: the observer estimates lasting torques; or put the file of --c or \
+             --rust into a firmware of your own",
+        ));
+    }
     let (reduced, request, made) =
         gains::requested(&args.gains, talk).map_err(gains::of_options)?;
     let design = deploy::state_design(&reduced, request, board).map_err(gains::of_options)?;

@@ -141,6 +141,7 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
         pose_rad,
         q: read(&args.q)?.unwrap_or(standard.q),
         r: read(&args.r)?.unwrap_or(standard.r),
+        integral: read(&args.integral)?,
         time,
         sensors: args.lqg.then_some(sensors),
         readings: Readings {

@@ -218,6 +218,7 @@ fn verified(effects: &[(&str, usize, &[f64])]) -> Verification {
         pose_rad: upright(&model),
         q: Weight::Scalar(100.0),
         r: Weight::Scalar(1.0),
+        integral: None,
         time: Time::Sampled {
             ts_s: 0.01,
             delay_s: None,

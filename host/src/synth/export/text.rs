@@ -45,6 +45,13 @@ pub fn text(design: &Design) -> String {
             plant.delayed_inputs * design.inputs.len()
         ),
     });
+    if design.integral.is_some() {
+        let sums = design.states.iter().filter(|s| s.name.starts_with("int_"));
+        parts.push(format!(
+            "Integral action: {} are sums of angles over time, which the law's caller keeps",
+            list(sums.map(|sum| sum.name.as_str()))
+        ));
+    }
     parts.extend(omitted_lines(&design.omitted));
     parts.push(String::new());
     parts.push(gain_table(design));
