@@ -288,11 +288,7 @@ impl Design {
 }
 
 /// Q of the plant's own `n` states, or of `all` that there are with past inputs.
-fn weight_of_states(
-    request: &Request,
-    n: usize,
-    all: usize,
-) -> Result<DMatrix<f64>, DesignError> {
+fn weight_of_states(request: &Request, n: usize, all: usize) -> Result<DMatrix<f64>, DesignError> {
     let whole = |size: &usize| *size == all && request.integral.is_none();
     let size = request.q.size().filter(whole).unwrap_or(n);
     request.q.matrix("Q", size, "states")

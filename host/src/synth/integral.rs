@@ -142,7 +142,9 @@ impl Sums {
 
     /// The law's states of these sums.
     pub fn states<'a>(&'a self, sums: &'a [i64]) -> impl Iterator<Item = i64> + 'a {
-        sums.iter().zip(&self.shift).map(|(sum, shift)| sum >> shift)
+        sums.iter()
+            .zip(&self.shift)
+            .map(|(sum, shift)| sum >> shift)
     }
 }
 

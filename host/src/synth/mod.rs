@@ -60,7 +60,7 @@ pub use quantise::{Format, Ranges, quantise};
 pub use request::{Readings, Request, Sensors, Time};
 pub use robust::{multi_model, multi_model_continuation, spectral_radius};
 pub use signal::Signal;
-pub use stiffness::{Stiffness, stiffness};
+pub use stiffness::{Stiffness, stiffness, torque_inputs};
 pub use system::{Continuous, Discrete, rows};
 pub use weight::Weight;
 pub use zeros::transmission_zeros;

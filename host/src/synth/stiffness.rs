@@ -32,19 +32,8 @@ pub struct Stiffness {
 /// A pose that is no equilibrium, a loop with a pole on the edge of stability.
 pub fn stiffness(model: &Model, design: &Design) -> Result<Stiffness, DesignError> {
     let n = model.link_count();
-    let point = OperatingPoint::of(model, &design.x0[..n])?;
-    let mass = point.equations.mass(&point.relative_rad);
-    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
-        model: model.name.clone(),
-    })?;
-    let convention = match model.angles {
-        Angles::Relative => DMatrix::identity(n, n),
-        Angles::Absolute => DMatrix::from_element(n, n, 1.0).lower_triangle(),
-    };
+    let torque = torque_inputs(model, &design.x0[..n])?;
     let (states, inputs) = design.plant.b.shape();
-    let mut torque = DMatrix::zeros(states, n);
-    let accelerate = convention * mass.inverse();
-    torque.view_mut((n, 0), (n, n)).copy_from(&accelerate);
     if let Some(integral) = &design.integral {
         return Ok(Stiffness {
             lean_per_torque: with_sums(design, integral, &torque)?,
@@ -74,6 +63,27 @@ pub fn stiffness(model: &Model, design: &Design) -> Result<Stiffness, DesignErro
         lean_per_torque,
         lean_per_dead_zone: lean_per_dead_zone.map(|lean| lean.rows(0, n).into_owned()),
     })
+}
+
+/// How a torque at each joint (columns) accelerates the states [angles, speeds] in a pose: 2 n x n.
+///
+/// # Errors
+/// A pose that is no equilibrium.
+pub fn torque_inputs(model: &Model, pose_rad: &[f64]) -> Result<DMatrix<f64>, DesignError> {
+    let n = model.link_count();
+    let point = OperatingPoint::of(model, pose_rad)?;
+    let mass = point.equations.mass(&point.relative_rad);
+    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
+        model: model.name.clone(),
+    })?;
+    let convention = match model.angles {
+        Angles::Relative => DMatrix::identity(n, n),
+        Angles::Absolute => DMatrix::from_element(n, n, 1.0).lower_triangle(),
+    };
+    let mut torque = DMatrix::zeros(2 * n, n);
+    let accelerate = convention * mass.inverse();
+    torque.view_mut((n, 0), (n, n)).copy_from(&accelerate);
+    Ok(torque)
 }
 
 /// With sums the driven joints rest at the pose, and the inputs are whatever it takes: 0 = A x + B u

@@ -227,7 +227,10 @@ fn sums_are_kept_as_in_the_simulated_loop() {
         largest = largest.max(memory[0].abs());
         let _ = writeln!(expected, "{} {} {} {}", u[0], u[1], memory[0], memory[1]);
     }
-    assert!((50..STEPS / 2).contains(&limited) && largest > 500.0, "{limited} {largest}");
+    assert!(
+        (50..STEPS / 2).contains(&limited) && largest > 500.0,
+        "{limited} {largest}"
+    );
     for program in [c, rust] {
         let ran = Command::new(&program).output().unwrap();
         let said = String::from_utf8(ran.stdout).unwrap();

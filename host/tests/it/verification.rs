@@ -72,7 +72,8 @@ fn the_law_that_is_stated_is_the_one_that_runs() {
 #[test]
 fn integral_action_reaches_every_file_that_can_hold_it() {
     let bench = bench();
-    let told = "gains free.toml --integral 50 --c law.h --rust law.rs --state-space law.json --json";
+    let told =
+        "gains free.toml --integral 50 --c law.h --rust law.rs --state-space law.json --json";
     let data = bench.run(told).json();
     assert_eq!(data["states"][2]["name"], "int_q1", "{data}");
     assert_eq!(data["k"][0].as_array().unwrap().len(), 3);
@@ -81,17 +82,39 @@ fn integral_action_reaches_every_file_that_can_hold_it() {
     assert_eq!(data["verification"]["stabilised"], true);
     assert_eq!(data["verification"]["law"], "fixed_point");
     assert!(data["margins"]["inputs"]["common"]["delay_s"].as_f64() > Some(0.0));
-    assert!(data["stiffness"]["lean_per_torque"][0][0].as_f64().unwrap().abs() < 1e-9);
+    assert!(
+        data["stiffness"]["lean_per_torque"][0][0]
+            .as_f64()
+            .unwrap()
+            .abs()
+            < 1e-9
+    );
     assert!(bench.get("law.h").contains("gains_integrate"));
     assert!(bench.get("law.rs").contains("pub fn integrate"));
 
     for (line, code, said) in [
-        ("gains free.toml --integral 0", 2, "the weight of integral 1 is 0"),
-        ("gains free.toml --integral 1 --continuous", 2, "--continuous"),
+        (
+            "gains free.toml --integral 0",
+            2,
+            "the weight of integral 1 is 0",
+        ),
+        (
+            "gains free.toml --integral 1 --continuous",
+            2,
+            "--continuous",
+        ),
         ("gains free.toml --integral 1,2", 2, "1 are needed"),
         ("controllers free.toml --plan law.json", 3, "sums of angles"),
-        ("deploy free.toml --integral 1 --law state --dry-run", 2, "no place for the sums"),
-        ("deploy free.toml --integral 1 --dry-run", 2, "--law observer"),
+        (
+            "deploy free.toml --integral 1 --law state --dry-run",
+            2,
+            "no place for the sums",
+        ),
+        (
+            "deploy free.toml --integral 1 --dry-run",
+            2,
+            "--law observer",
+        ),
     ] {
         let ran = bench.run(line);
         assert_eq!(ran.code, Some(code), "{line}: {}", ran.stderr);

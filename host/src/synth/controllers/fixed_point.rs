@@ -34,12 +34,7 @@ struct Words {
 impl FixedPointFeedback {
     /// The law in a loop about `x0`, SI: angles, speeds, sums, then past inputs as they are before
     /// the first sample.
-    pub fn new(
-        law: FixedLaw,
-        sums: Option<Sums>,
-        x0: &[f64],
-        joints: usize,
-    ) -> FixedPointFeedback {
+    pub fn new(law: FixedLaw, sums: Option<Sums>, x0: &[f64], joints: usize) -> FixedPointFeedback {
         let (pose, rest) = x0.split_at(2 * joints);
         let past = &rest[sums.as_ref().map_or(0, |sums| sums.joints.len())..];
         let word = |value: &i64| *value as i16;

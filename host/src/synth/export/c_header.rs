@@ -28,8 +28,13 @@ pub fn c_header(design: &Design, fixed: &Fixed, made: &Provenance, name: &str) -
     for line in head(design, fixed, made) {
         let _ = writeln!(text, " * {}", line.replace("*/", "* /"));
     }
-    let body =
-        macros(design, law) + &table(law) + &asserts(law) + C_LAW + &sums(fixed) + &past(design) + &test(law);
+    let body = macros(design, law)
+        + &table(law)
+        + &asserts(law)
+        + C_LAW
+        + &sums(fixed)
+        + &past(design)
+        + &test(law);
     let _ = write!(text, " */\n{}", named(&body, name));
     text
 }
