@@ -101,31 +101,12 @@ impl Design {
             inputs: u0,
             omitted,
         } = linearise(model, &request.pose_rad)?;
-        let (n, m) = plant.b.shape();
+        let m = plant.b.ncols();
         let r = request.r.matrix("R", m, "inputs")?;
         let integral = request.integral.as_ref();
         let integral = integral.map(|weight| Integral::of(model, weight));
         let integral = integral.transpose()?;
-        let (gains, sampled, q) = match request.time {
-            Time::Continuous if integral.is_some() => return Err(DesignError::IntegralContinuous),
-            Time::Continuous => {
-                let q = request.q.matrix("Q", n, "states")?;
-                (lqr(&plant, &q, &r)?, None, q)
-            }
-            Time::Sampled { ts_s, delay_s } => {
-                let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
-                let mut sampled = zoh(&plant, ts_s, delay_s)?;
-                let mut q = weight_of_states(request, n, sampled.a.nrows())?;
-                if let Some(integral) = &integral {
-                    sampled = integral.with_sums(&sampled);
-                    q = integral.weight(&q);
-                }
-                let gains = dlqr(&sampled, &q, &r);
-                let by_sampling = |error| by_sampling(error, &plant, ts_s, integral.is_some());
-                let gains = gains.map_err(by_sampling)?;
-                (gains, Some((sampled, delay_s)), q)
-            }
-        };
+        let (gains, sampled, q) = solved(model, request, &plant, integral.as_ref(), &r)?;
         let driven = model.driven_joints();
         let outputs = plant.c.select_rows(&driven);
         let angles = plant.c.rows(0, model.link_count()).into_owned();
@@ -285,6 +266,36 @@ impl Design {
             compensator,
         })
     }
+}
+
+/// The gains, the sampled plant with its delay, and Q.
+type Solved = (Gains, Option<(Discrete, f64)>, DMatrix<f64>);
+
+fn solved(
+    model: &Model,
+    request: &Request,
+    plant: &Continuous,
+    integral: Option<&Integral>,
+    r: &DMatrix<f64>,
+) -> Result<Solved, DesignError> {
+    let n = plant.a.nrows();
+    let Time::Sampled { ts_s, delay_s } = request.time else {
+        if integral.is_some() {
+            return Err(DesignError::IntegralContinuous);
+        }
+        let q = request.q.matrix("Q", n, "states")?;
+        return Ok((lqr(plant, &q, r)?, None, q));
+    };
+    let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
+    let mut sampled = zoh(plant, ts_s, delay_s)?;
+    let mut q = weight_of_states(request, n, sampled.a.nrows())?;
+    if let Some(integral) = integral {
+        sampled = integral.with_sums(&sampled);
+        q = integral.weight(&q);
+    }
+    let by_sampling = |error| by_sampling(error, plant, ts_s, integral.is_some());
+    let gains = dlqr(&sampled, &q, r).map_err(by_sampling)?;
+    Ok((gains, Some((sampled, delay_s)), q))
 }
 
 /// Q of the plant's own `n` states, or of `all` that there are with past inputs.
