@@ -33,8 +33,10 @@ use handstand::{Error, Result};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
+mod recovery;
 mod request;
 
+use recovery::Unrecovered;
 pub(super) use request::requested;
 use request::{Pose, SpeedsArg, pose};
 
@@ -93,6 +95,10 @@ pub struct GainsArgs {
     #[arg(long, value_name = "WEIGHT", requires = "lqg")]
     #[arg(value_parser = weight, allow_hyphen_values = true)]
     process: Option<WeightArg>,
+    /// Loop transfer recovery: design the filter as if inputs erred by this share of their limits,
+    /// too
+    #[arg(long, value_name = "SHARE", requires = "lqg", value_parser = input::positive)]
+    recovery: Option<f64>,
     /// Largest departures of the states, SI: angles, then speeds
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
     range: Option<WeightArg>,
@@ -166,15 +172,22 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
     drop(bar);
     let figures = LoopFigures::of(&part, &design)?;
+    let recovered = Unrecovered::of(&part, &request)?;
     let mut data = with_margins(gains_json(&design, &made, &verified), figures.as_ref());
+    if let Some(before) = &recovered {
+        data["without_recovery"] = before.json();
+    }
     if let Some(tuned) = &tuned {
         data["tuned"] = json!(tuned);
     }
     talk.result(&data, || {
         format!(
-            "{}\n\n{}\n{}",
+            "{}\n\n{}{}\n{}",
             export::text(&design).trim_end(),
             margins_text(figures.as_ref(), &design),
+            recovered
+                .as_ref()
+                .map_or(String::new(), |before| before.text()),
             verification_text(&verified, whole.slides())
         )
     })?;
@@ -190,7 +203,9 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
         })?;
         talk.write(file, &page, args.force)?;
     }
-    Ok(ExitStatus::answer(verified.stabilised))
+    let estimation = design.estimator.as_ref();
+    let is_linear = estimation.is_none_or(|it| it.beyond(&design).is_none());
+    Ok(ExitStatus::answer(verified.stabilised && is_linear))
 }
 
 /// Weights for `--tune`, and what to say of them on stderr.

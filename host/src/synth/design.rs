@@ -13,6 +13,7 @@ use super::operating_point::input_delay_s;
 use super::quantise::{Format, Ranges, largest_word, power_of_two_above, quantise};
 use super::request::{Request, Sensors, Time};
 use super::signal::{Signal, default_limit, input, states};
+use super::stationary::{Stationary, stationary};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
 use super::zoh;
@@ -71,6 +72,11 @@ pub struct Estimation {
     pub estimator: Estimator,
     /// Gains and filter as one.
     pub compensator: Compensator,
+    /// The share of the inputs' ranges by which the filter takes them to err, beside the process
+    /// noise.
+    pub recovery: f64,
+    /// How far noise moves the loop; none of a loop that does not decay.
+    pub stationary: Option<Stationary>,
 }
 
 /// A law in fixed point.
@@ -247,23 +253,32 @@ impl Design {
         };
         let mut variance = vec![rounding_variance(sensors.position_step_rad); joints];
         variance.push(rounding_variance(sensors.gyro_step_rad_s));
+        let held = zoh(&self.plant, plant.ts_s, 0.0)?.b;
+        let of_inputs = |share: f64| {
+            let sd = share * DVector::from_column_slice(input_range);
+            let noisy = &held * DMatrix::from_diagonal(&sd);
+            &noisy * noisy.transpose()
+        };
         let process = match &sensors.process {
             Some(process) => process.matrix("W", own, "states")?,
-            None => {
-                let held = zoh(&self.plant, plant.ts_s, 0.0)?.b;
-                let sd = 0.01 * DVector::from_column_slice(input_range);
-                let noisy = held * DMatrix::from_diagonal(&sd);
-                &noisy * noisy.transpose()
-            }
+            None => of_inputs(0.01),
         };
+        let process = plant.whole_state("W", &process)?;
+        let recovery = of_inputs(sensors.recovery);
+        let mut taken = process.clone();
+        let mut own_part = taken.view_mut((0, 0), (own, own));
+        own_part += recovery;
         let measurement = DMatrix::from_diagonal(&variance.into());
-        let estimator = kalman(&plant, &process, &measurement)?;
+        let estimator = kalman(&plant, &taken, &measurement)?;
         let compensator = lqg(&plant, &self.gains, &estimator)?;
+        let stationary = stationary(&plant, &compensator, &process, &measurement);
         Ok(Estimation {
             outputs: self.states[..=joints].to_vec(),
             plant,
             estimator,
             compensator,
+            recovery: sensors.recovery,
+            stationary,
         })
     }
 }

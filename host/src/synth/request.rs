@@ -99,4 +99,7 @@ pub struct Sensors {
     /// Covariance of the process noise; without it, that of inputs that err by a hundredth of their
     /// range.
     pub process: Option<Weight>,
+    /// Loop transfer recovery: the filter is designed as if the inputs erred by so large a share of
+    /// their ranges, too (standard deviation); 0 is the filter of least variance.
+    pub recovery: f64,
 }

@@ -54,11 +54,38 @@ fn the_law_that_is_stated_is_the_one_that_runs() {
     assert_eq!(coarse.code, Some(1), "{coarse:?}");
     for said in [
         "The law of gains and filter",
+        "Noise moves it by     q1",
         "NOT stabilised",
         "without the filter",
     ] {
         assert!(coarse.stdout.contains(said), "{said}: {}", coarse.stdout);
     }
+    let recovered = bench
+        .run("gains free.toml --lqg --recovery 0.1 --json")
+        .json();
+    let noisy = |stationary: &serde_json::Value| stationary["input_rms"][0].as_f64().unwrap();
+    let before = &recovered["without_recovery"];
+    let after = &recovered["estimator"]["stationary"];
+    assert!(
+        noisy(after) > 1.1 * noisy(&before["stationary"]),
+        "{before}"
+    );
+    let alpha = |of: &serde_json::Value| of["margins"]["inputs"]["disk"]["alpha"].as_f64().unwrap();
+    assert!(alpha(&recovered) >= alpha(before));
+    // Noise alone drives the paper's robot out of the law's range.
+    bench.put(
+        "handstand.toml",
+        include_str!("../../models/handstand.toml"),
+    );
+    let wild = bench.run("gains handstand.toml --lqg --position-step 0.5 --gyro-step 100");
+    assert_eq!(wild.code, Some(1), "{wild:?}");
+    assert!(
+        wild.stdout
+            .contains("NOT linear: noise alone moves q2 by 4.91 rad"),
+        "{wild:?}"
+    );
+    assert_eq!(recovered["estimator"]["recovery"], 0.1);
+    assert_eq!(bench.run("gains free.toml --recovery 0.1").code, Some(2));
     let verification = |line: &str| bench.run(line).json()["verification"].clone();
     let exact = verification("gains free.toml --json");
     let stepped = verification("gains free.toml --json --position-step 0.02 --speeds difference");

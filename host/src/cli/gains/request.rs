@@ -136,6 +136,7 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
             .gyro_step
             .unwrap_or(10.0 * std::f64::consts::PI / 180.0),
         process: read(&args.process)?,
+        recovery: args.recovery.unwrap_or(0.0),
     };
     let request = Request {
         pose_rad,

@@ -93,6 +93,11 @@ fn estimator(estimation: &Estimation) -> Value {
             "d": rows(&controller.d),
         },
         "loop_poles": complex(&controller.loop_poles),
+        "recovery": estimation.recovery,
+        "stationary": estimation.stationary.as_ref().map(|stationary| json!({
+            "state_rms": stationary.state_rms,
+            "input_rms": stationary.input_rms,
+        })),
     })
 }
 

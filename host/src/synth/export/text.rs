@@ -4,7 +4,7 @@ use super::format::{digits, plain, several};
 use super::values::{list, names};
 use crate::output::number::short;
 use crate::synth::eigen::largest;
-use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect};
+use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect, Signal};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::DMatrix;
 
@@ -209,10 +209,38 @@ fn estimator_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
         "Poles of the filter   {}",
         several(&estimation.estimator.poles)
     ));
+    lines.extend(stationary_lines(design, estimation));
     lines.push(format!(
         "With filter and gains the loop's spectral radius is {:.6}",
         largest(&estimation.compensator.loop_poles)
     ));
+    lines
+}
+
+/// How far noise moves the loop, and whether that is too far.
+fn stationary_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
+    let Some(stationary) = &estimation.stationary else {
+        return vec!["Noise moves this loop without bound".to_string()];
+    };
+    let said = |signal: &Signal, rms: f64| match signal.unit {
+        "rad" => format!("{} {} deg", signal.name, short(rms.to_degrees())),
+        unit => format!("{} {} {unit}", signal.name, short(rms)),
+    };
+    let joints = design.plant.a.nrows() / 2;
+    let angles = design.states[..joints].iter().zip(&stationary.state_rms);
+    let inputs = design.inputs.iter().zip(&stationary.input_rms);
+    let all: Vec<String> = angles.chain(inputs).map(|(s, rms)| said(s, *rms)).collect();
+    let mut lines = vec![format!("Noise moves it by     {} RMS", all.join(", "))];
+    if let Some(beyond) = estimation.beyond(design) {
+        lines.push(format!(
+            "NOT linear: noise alone moves {} by {} {} RMS, beyond its range of {}; take finer \
+             sensors, or gains that ask for less",
+            beyond.signal.name,
+            short(beyond.rms),
+            beyond.signal.unit,
+            plain(beyond.range)
+        ));
+    }
     lines
 }
 
