@@ -112,7 +112,8 @@ impl Design {
         let integral = request.integral.as_ref();
         let integral = integral.map(|weight| Integral::of(model, weight));
         let integral = integral.transpose()?;
-        let (gains, sampled, q) = solved(model, request, &plant, integral.as_ref(), &r)?;
+        let (gains, sampled, q) = solved(model, request, &plant, integral.as_ref(), &r)
+            .map_err(|error| named(error, model, request, integral.as_ref()))?;
         let driven = model.driven_joints();
         let outputs = plant.c.select_rows(&driven);
         let angles = plant.c.rows(0, model.link_count()).into_owned();
@@ -150,7 +151,9 @@ impl Design {
             };
             design.fixed = Some(design.fixed(request, &sampled, input_range.clone())?);
             if let Some(sensors) = &request.sensors {
-                design.estimator = Some(design.estimator(sensors, sampled, &input_range)?);
+                let estimator = design.estimator(sensors, sampled, &input_range);
+                let named = |error| named(error, model, request, None);
+                design.estimator = Some(estimator.map_err(named)?);
             }
         }
         Ok(design)
@@ -283,6 +286,20 @@ impl Design {
     }
 }
 
+/// The error with its state by name; past inputs are not among the states that can lack anything.
+fn named(
+    error: DesignError,
+    model: &Model,
+    request: &Request,
+    integral: Option<&Integral>,
+) -> DesignError {
+    let ts_s = match request.time {
+        Time::Continuous => None,
+        Time::Sampled { ts_s, .. } => Some(ts_s),
+    };
+    error.of_states(&states(model, &[], integral, 0), ts_s)
+}
+
 /// The gains, the sampled plant with its delay, and Q.
 type Solved = (Gains, Option<(Discrete, f64)>, DMatrix<f64>);
 
@@ -348,4 +365,66 @@ fn point(pose_rad: &[f64], sums: usize, inputs: &[f64], delayed: usize) -> Vec<f
         point.extend(inputs);
     }
     point
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Reason as _;
+    use std::path::Path;
+
+    const PENDULUM: &str = r#"
+[rig]
+name = "pendulum"
+angle_zero = "hanging"
+
+[[link]]
+com_m = 0.1
+mass_kg = 0.2
+inertia_kg_m2 = 1e-4
+
+[[joint]]
+drive = "torque"
+
+[log]
+time = { column = "time_s", unit = "s" }
+
+[[log.joint]]
+position = { column = "angle_rad", unit = "rad" }
+input = { column = "torque_nm", unit = "N m" }
+"#;
+
+    fn hanging(ts_s: f64) -> Result<Design, DesignError> {
+        let model = Model::parse(PENDULUM, Path::new("pendulum.toml")).unwrap();
+        let request = Request {
+            pose_rad: vec![0.0],
+            time: Time::Sampled {
+                ts_s,
+                delay_s: None,
+            },
+            ..Request::standard(&model)
+        };
+        Design::of(&model, &request)
+    }
+
+    /// A pendulum that swings by half a period in each sample looks the same whatever its phase: no
+    /// input parts its two modes, though one does between the samples.
+    #[test]
+    fn a_mode_that_sampling_hides_is_not_said_to_lack_a_drive() {
+        let design = hanging(0.01).unwrap();
+        assert!(design.controllability.is_full());
+        let half_period_s = std::f64::consts::PI / design.poles[0].im.abs();
+        let error = hanging(half_period_s).unwrap_err();
+        let DesignError::LostBySampling { mode, faster, .. } = &error else {
+            panic!("{error}")
+        };
+        assert!(*faster && mode.ts_s == Some(half_period_s), "{error:?}");
+        let said = error.to_string();
+        assert!(
+            said.contains("no input reaches it, though in continuous time") && said.contains("q1"),
+            "{said}"
+        );
+        assert_eq!(error.remedy(), "sample faster");
+        assert!(hanging(0.9 * half_period_s).is_ok());
+    }
 }

@@ -202,12 +202,12 @@ fn a_page_shows_what_was_verified() {
 fn a_region_that_the_search_ends_in_is_a_lower_bound() {
     let bench = bench();
     let free = bench.run("gains free.toml");
-    let said = "Largest cube of starts of which 95 % are stabilised: at least 16.0 deg.";
+    let said = "Largest cube of starts of which 95 % are stabilised: at least 16.00 deg.";
     assert!(free.stdout.contains(said), "{}", free.stdout);
     let stuck = bench.run("gains stuck.toml");
     for said in [
         "95 % are stabilised: within 11.",
-        "leaves out: at least 16.0 deg.",
+        "leaves out: at least 16.00 deg.",
         "region by coulomb at joint 1: without it at least 16.0 deg",
     ] {
         assert!(stuck.stdout.contains(said), "{said}: {}", stuck.stdout);

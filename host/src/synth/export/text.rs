@@ -132,7 +132,21 @@ fn right(table: &mut Table) {
 }
 
 fn plant_lines(design: &Design) -> Vec<String> {
-    let unstable = design.poles.iter().filter(|pole| pole.re > 0.0).count();
+    // Rounding scatters poles at 0, by the root of itself where two meet.
+    let size = design.plant.a.norm().max(1.0);
+    let marginal = design
+        .poles
+        .iter()
+        .filter(|pole| pole.re.abs() <= 1e-7 * size);
+    let marginal = match marginal.count() {
+        0 => String::new(),
+        count => format!(", {count} marginal"),
+    };
+    let unstable = design
+        .poles
+        .iter()
+        .filter(|pole| pole.re > 1e-7 * size)
+        .count();
     let minimum = design.zeros.iter().all(|zero| zero.re <= 0.0);
     let kind = match (design.zeros.is_empty(), minimum) {
         (true, _) => "none: minimum phase".to_string(),
@@ -141,7 +155,7 @@ fn plant_lines(design: &Design) -> Vec<String> {
     };
     vec![
         format!(
-            "Poles of the plant    {} 1/s: {unstable} unstable",
+            "Poles of the plant    {} 1/s: {unstable} unstable{marginal}",
             several(&design.poles)
         ),
         format!("Zeros to driven q     {kind}"),
@@ -275,7 +289,12 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
         format!("{} ±{range} in steps of {step}", state.name)
     });
     let ranges: Vec<String> = ranges.collect();
-    vec![
+    let beyond = design.inputs.iter().enumerate().filter(|(i, _)| {
+        let error = loss.gain_error[*i] + loss.state_error[*i] + loss.input_error[*i];
+        error > fixed.ranges.input[*i]
+    });
+    let beyond: Vec<&str> = beyond.map(|(_, input)| input.name.as_str()).collect();
+    let mut lines = vec![
         table.to_string(),
         String::new(),
         match ranges.len() <= WIDEST {
@@ -290,5 +309,13 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
             loss.radius_fixed,
             law.fingerprint()
         ),
-    ]
+    ];
+    if !beyond.is_empty() {
+        lines.push(format!(
+            "ROUNDING CAN EXCEED THE LIMIT of {}: declare smaller ranges (--range) or steps of your \
+             own (--state-step)",
+            list(&beyond)
+        ));
+    }
+    lines
 }
