@@ -208,7 +208,7 @@ fn a_region_that_the_search_ends_in_is_a_lower_bound() {
     for said in [
         "95 % are stabilised: within 11.",
         "leaves out: at least 16.00 deg.",
-        "region by coulomb at joint 1: without it at least 16.0 deg",
+        "region by coulomb at joint 1: without it at least 16.00 deg",
     ] {
         assert!(stuck.stdout.contains(said), "{said}: {}", stuck.stdout);
     }
