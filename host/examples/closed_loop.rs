@@ -59,6 +59,7 @@ fn request(robot: &Model) -> Request {
     Request {
         pose_rad: upright(robot),
         weights: CostWeights::PAPER,
+        integral: None,
         time: Time::Sampled {
             ts_s: PERIOD_S,
             delay_s: None,

@@ -29,6 +29,7 @@ pub fn regulator() -> Result<Design> {
     let request = Request {
         pose_rad: upright(&robot),
         weights: CostWeights::PAPER,
+        integral: None,
         time: Time::Sampled {
             ts_s: 0.01,
             delay_s: Some(0.01),

@@ -34,8 +34,10 @@ use handstand::{Error, Result};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
+mod recovery;
 mod request;
 
+use recovery::Unrecovered;
 pub(super) use request::requested;
 use request::{Pose, SpeedsArg, pose};
 
@@ -52,6 +54,10 @@ pub struct GainsArgs {
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     #[arg(requires = "q")]
     r: Option<WeightArg>,
+    /// Integral action: weight of the integrals of the driven joints' angles, one number or a list
+    #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["continuous", "lqg", "tune"])]
+    integral: Option<WeightArg>,
     /// Search weights with the largest region under all effects of the model, margins kept
     #[arg(long, conflicts_with_all = ["q", "r", "continuous"])]
     tune: bool,
@@ -92,6 +98,10 @@ pub struct GainsArgs {
     #[arg(long, value_name = "WEIGHT", requires = "lqg")]
     #[arg(value_parser = weight, allow_hyphen_values = true)]
     process: Option<WeightArg>,
+    /// Loop transfer recovery: design the filter as if inputs erred by this share of their limits,
+    /// too
+    #[arg(long, value_name = "SHARE", requires = "lqg", value_parser = input::positive)]
+    recovery: Option<f64>,
     /// Largest departures of the states, SI: angles, then speeds
     #[arg(long, value_name = "LIST", value_parser = weight, allow_hyphen_values = true)]
     range: Option<WeightArg>,
@@ -165,15 +175,22 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
     drop(bar);
     let figures = LoopFigures::of(&part, &design)?;
+    let recovered = Unrecovered::of(&part, &request)?;
     let mut data = with_margins(gains_json(&design, &made, &verified), figures.as_ref());
+    if let Some(before) = &recovered {
+        data["without_recovery"] = before.json();
+    }
     if let Some(tuned) = &tuned {
         data["tuned"] = json!(tuned);
     }
     talk.result(&data, || {
         format!(
-            "{}\n\n{}\n{}",
+            "{}\n\n{}{}\n{}",
             export::text(&design).trim_end(),
             margins_text(figures.as_ref(), &design),
+            recovered
+                .as_ref()
+                .map_or(String::new(), |before| before.text()),
             verification_text(&verified, whole.slides())
         )
     })?;
@@ -189,10 +206,12 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
         })?;
         talk.write(file, &page, args.force)?;
     }
+    let estimation = design.estimator.as_ref();
+    let is_linear = estimation.is_none_or(|it| it.beyond(&design).is_none());
     if !verified.stabilised && !verified.held && !args.tune && !args.continuous {
         talk.say("--tune looks for weights that hold it");
     }
-    Ok(ExitStatus::answer(verified.stabilised))
+    Ok(ExitStatus::answer(verified.stabilised && is_linear))
 }
 
 /// Weights for `--tune`, and what to say of them on stderr.
@@ -234,6 +253,7 @@ impl GainsArgs {
         let given = [
             (self.q.is_some(), "--q"),
             (self.r.is_some(), "--r"),
+            (self.integral.is_some(), "--integral"),
             (self.tune, "--tune"),
             (self.ts != 0.01, "--ts"),
             (self.delay.is_some(), "--delay"),
@@ -257,6 +277,11 @@ impl GainsArgs {
         ];
         let mut names = given.into_iter().filter(|(given, _)| *given);
         names.next().map(|(_, name)| name)
+    }
+
+    /// Whether the gains act on sums of angles.
+    pub(super) fn is_integral(&self) -> bool {
+        self.integral.is_some()
     }
 
     /// Whether files are replaced.

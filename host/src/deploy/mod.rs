@@ -9,6 +9,7 @@ mod basis;
 mod board;
 mod limits;
 mod observer;
+mod observer_loop;
 #[cfg(feature = "virtual-cm5")]
 pub mod rehearsal;
 mod replay;
@@ -21,6 +22,7 @@ pub use basis::{EffectUse, PlanBasis, ToldDrives, UsePlace};
 pub use board::{Board, ServoPair};
 pub use limits::{ModeLimit, mode_limits};
 pub use observer::{reading_steps, state_steps};
+pub use observer_loop::{ObserverLoop, observer_loop};
 pub use replay::replay;
 pub use rust_file::{plan_file, plan_of_file};
 pub use state::state_design;

@@ -10,6 +10,8 @@ const LOW: (f64, f64) = (6.0, 30.0);
 const TORQUE_NM: f64 = 0.01;
 const DEAD_ZONE: f64 = 0.01;
 
+const UNSTABLE: &str = "The linear loop is not stable: it has no margins.";
+
 /// Whether a loop is robust to less than 6 dB or 30 degrees in all channels at once.
 pub fn is_low(margins: &Margins) -> bool {
     margins.disk.gain_db() < LOW.0 || margins.disk.phase_rad().to_degrees() < LOW.1
@@ -18,7 +20,7 @@ pub fn is_low(margins: &Margins) -> bool {
 /// Lines for people.
 pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
     let Some(LoopFigures { margins, stiffness }) = figures else {
-        return "The linear loop is not stable: it has no margins.".to_string();
+        return UNSTABLE.to_string();
     };
     let mut lines = table("Margins at the inputs", &margins.inputs, &design.inputs);
     if let (Some(sensors), Some(estimation)) = (&margins.sensors, &design.estimator) {
@@ -53,8 +55,26 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
     lines.join("\n")
 }
 
-/// Gain, phase and delay of all alike and of each alone, the disk, the peaks.
+/// Margins at the inputs of a loop in lines for people; `channels` are the inputs' names.
+pub fn input_margins_text(margins: Option<&Margins>, channels: &[&str]) -> String {
+    match margins {
+        Some(margins) => lines_of("Margins at the inputs", margins, channels).join("\n"),
+        None => UNSTABLE.to_string(),
+    }
+}
+
+/// Margins of one place of a loop; `null` of a loop that is not stable.
+pub fn place_margins_json(margins: Option<&Margins>) -> Value {
+    margins.map_or(Value::Null, of_place)
+}
+
 fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
+    let names: Vec<&str> = channels.iter().map(|it| it.name.as_str()).collect();
+    lines_of(title, margins, &names)
+}
+
+/// Gain, phase and delay of all alike and of each alone, the disk, the peaks.
+fn lines_of(title: &str, margins: &Margins, channels: &[&str]) -> Vec<String> {
     let mut lines = vec![format!("{title:<24}gain              phase       delay")];
     let mut put = |name: &str, of: &LoopMargin| {
         let above = if of.gain[1].is_finite() {
@@ -74,7 +94,7 @@ fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
     put("all alike", &margins.common);
     if channels.len() > 1 {
         for (channel, single) in channels.iter().zip(&margins.single) {
-            put(&format!("{} alone", channel.name), single);
+            put(&format!("{channel} alone"), single);
         }
     }
     let disk = &margins.disk;
@@ -100,13 +120,18 @@ fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
     lines
 }
 
+/// Rounded to two places; a zero has no sign for people.
+fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0 + 0.0
+}
+
 fn lean_lines(stiffness: &Stiffness, design: &Design) -> Vec<String> {
     let joints = stiffness.lean_per_torque.nrows();
     let said = |lean: Vec<f64>| {
         let each = lean.iter().zip(&design.states[..joints]);
         let each = each.map(|(lean, state)| match state.unit {
-            "rad" => format!("{} {:+.2} deg", state.name, lean.to_degrees()),
-            _ => format!("{} {:+.2} mm", state.name, 1e3 * lean),
+            "rad" => format!("{} {:+.2} deg", state.name, hundredths(lean.to_degrees())),
+            _ => format!("{} {:+.2} mm", state.name, hundredths(1e3 * lean)),
         });
         each.collect::<Vec<String>>().join(", ")
     };

@@ -36,7 +36,9 @@ pub use file_names::{file_name, file_names};
 pub use gains_page::{GainsReport, gains_page};
 pub use json::{diagnosis_json, gains_json, json};
 pub use log_check::{log_check_json, log_check_text};
-pub use margins::{is_low, margins_json, margins_text, with_margins};
+pub use margins::{
+    input_margins_text, is_low, margins_json, margins_text, place_margins_json, with_margins,
+};
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
 pub(crate) use page::html_with;

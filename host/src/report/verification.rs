@@ -13,7 +13,7 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
     // Where the search ends, the region may be larger.
     let reach = |rad: f64, open: bool| {
         let from = if open { "at least" } else { "within" };
-        format!("{from} {:.1} deg{}", rad.to_degrees(), also_mm(rad))
+        format!("{from} {:.2} deg{}", rad.to_degrees(), also_mm(rad))
     };
     let near = &verified.near;
     let mut lines = vec![

@@ -78,7 +78,7 @@ fn watched(closed: &ClosedLoop, design: &Design, start_rad: &[f64], seconds: f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synth::CostWeights;
+    use crate::synth::{CostWeights, Weight};
     use std::path::Path;
 
     #[test]
@@ -99,6 +99,30 @@ mod tests {
         // The steps of the table leave it a small limit cycle.
         assert!(last.fold(0.0, f64::max) < 2e-3);
         assert!((response.time_s.last().unwrap() - 6.0).abs() < 0.02);
+    }
+
+    /// With integral action the driven joints come back to the pose, and the bar's joint alone leans.
+    #[test]
+    fn integral_action_brings_the_driven_joints_back() {
+        let text = include_str!("../../models/handstand.toml");
+        let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
+        let leans = |integral| {
+            let request = Request {
+                weights: CostWeights::Given {
+                    q: Weight::Diagonal(vec![1.0, 1.0, 1.0, 0.01, 0.01, 0.01]),
+                    r: Weight::Scalar(1.0),
+                },
+                integral,
+                ..Request::standard(&model)
+            };
+            let design = Design::of(&model, &request).unwrap();
+            let stepped = step_response(&model, &design, &request, 1e-3, 20.0).unwrap();
+            let last = stepped.angle_rad.iter();
+            let last: Vec<f64> = last.map(|a| a.last().unwrap().to_degrees()).collect();
+            last[1].abs().max(last[2].abs())
+        };
+        let (without, with) = (leans(None), leans(Some(Weight::Scalar(1.0))));
+        assert!(without > 0.3 && with < 0.05, "{without} {with}");
     }
 
     /// A lasting torque ends in the lean that the closed form says.

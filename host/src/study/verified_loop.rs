@@ -62,6 +62,7 @@ pub(super) fn law(design: &Design) -> Box<dyn Controller> {
         }),
         (_, Some(fixed)) => Box::new(FixedPointFeedback::new(
             fixed.law.clone(),
+            fixed.sums.clone(),
             &design.x0,
             joints,
         )),

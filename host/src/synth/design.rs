@@ -6,12 +6,14 @@ use super::error::{DesignError, MOST_GROWTH};
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
+use super::integral::{Integral, Sums};
 use super::linearise::{Linearisation, linearise};
 use super::omitted::OmittedEffect;
 use super::operating_point::input_delay_s;
-use super::quantise::{Ranges, largest_word, power_of_two_above, quantise};
+use super::quantise::{Format, Ranges, largest_word, power_of_two_above, quantise};
 use super::request::{Request, Sensors, Time};
 use super::signal::{Signal, input, states};
+use super::stationary::{Stationary, stationary};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
 use super::zoh;
@@ -36,8 +38,11 @@ pub struct Design {
     pub omitted: Vec<OmittedEffect>,
     /// The plant in continuous time.
     pub plant: Continuous,
-    /// The sampled plant, and the delay it holds, s.
+    /// The sampled plant, and the delay it holds, s. With integral action the sums are states of it,
+    /// between its own and the past inputs.
     pub sampled: Option<(Discrete, f64)>,
+    /// The sums of angles among the states.
+    pub integral: Option<Integral>,
     /// Q and R.
     pub weights: [DMatrix<f64>; 2],
     /// K and what goes with it.
@@ -67,6 +72,11 @@ pub struct Estimation {
     pub estimator: Estimator,
     /// Gains and filter as one.
     pub compensator: Compensator,
+    /// The share of the inputs' ranges by which the filter takes them to err, beside the process
+    /// noise.
+    pub recovery: f64,
+    /// How far noise moves the loop; none of a loop that does not decay.
+    pub stationary: Option<Stationary>,
 }
 
 /// A law in fixed point.
@@ -76,6 +86,8 @@ pub struct Fixed {
     pub ranges: Ranges,
     /// The table.
     pub law: FixedLaw,
+    /// How the caller keeps the sums of angles among the states.
+    pub sums: Option<Sums>,
     /// What rounding costs.
     pub loss: Loss,
 }
@@ -95,28 +107,15 @@ impl Design {
             inputs: u0,
             omitted,
         } = linearise(model, &request.pose_rad)?;
-        let n = plant.a.nrows();
-        let state_range = request.state_ranges(n)?;
-        let input_range = request.input_ranges(model)?;
-        let weigh = |with_past| {
-            request
-                .weights
-                .matrices(&state_range, &input_range, with_past)
+        let ranges = Ranges {
+            state: request.state_ranges(plant.a.nrows())?,
+            input: request.input_ranges(model)?,
         };
-        let (gains, sampled, weights) = match request.time {
-            Time::Continuous => {
-                let [q, r] = weigh(n)?;
-                (lqr(&plant, &q, &r)?, None, [q, r])
-            }
-            Time::Sampled { ts_s, delay_s } => {
-                let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
-                let sampled = zoh(&plant, ts_s, delay_s)?;
-                let [q, r] = weigh(sampled.a.nrows())?;
-                let gains = dlqr(&sampled, &q, &r);
-                let gains = gains.map_err(|error| by_sampling(error, &plant, ts_s))?;
-                (gains, Some((sampled, delay_s)), [q, r])
-            }
-        };
+        let integral = request.integral.as_ref();
+        let integral = integral.map(|weight| Integral::of(model, weight));
+        let integral = integral.transpose()?;
+        let (gains, sampled, weights) = solved(model, request, &plant, &ranges, integral.as_ref())
+            .map_err(|error| named(error, model, request, integral.as_ref()))?;
         let driven = model.driven_joints();
         let outputs = plant.c.select_rows(&driven);
         let angles = plant.c.rows(0, model.link_count()).into_owned();
@@ -124,10 +123,12 @@ impl Design {
         let delayed = sampled
             .as_ref()
             .map_or(0, |(sampled, _)| sampled.delayed_inputs);
+        let sums = integral.as_ref().map_or(0, |it| it.joints.len());
         let mut design = Design {
             model: model.name.clone(),
-            states: states(model, &inputs, delayed),
-            x0: point(&request.pose_rad, &u0, delayed),
+            states: states(model, &inputs, integral.as_ref(), delayed),
+            x0: point(&request.pose_rad, sums, &u0, delayed),
+            integral,
             u0,
             omitted,
             poles: poles(&plant.a)?,
@@ -143,13 +144,12 @@ impl Design {
             fixed: None,
         };
         if let Some((sampled, _)) = design.sampled.clone() {
-            let ranges = Ranges {
-                state: state_range,
-                input: input_range.clone(),
-            };
+            let input_range = ranges.input.clone();
             design.fixed = Some(design.fixed(request, &sampled, ranges)?);
             if let Some(sensors) = &request.sensors {
-                design.estimator = Some(design.estimator(sensors, sampled, &input_range)?);
+                let estimator = design.estimator(sensors, sampled, &input_range);
+                let named = |error| named(error, model, request, None);
+                design.estimator = Some(estimator.map_err(named)?);
             }
         }
         Ok(design)
@@ -163,6 +163,10 @@ impl Design {
     ) -> Result<Fixed, DesignError> {
         let Ranges { state, input } = &mut ranges;
         let mut format = request.format.clone();
+        let mut sums = None;
+        if let Some(integral) = &self.integral {
+            sums = Some(self.sums(integral, plant.ts_s, input, state, &mut format)?);
+        }
         if plant.delayed_inputs > 0 {
             // Past inputs come back in the steps in which they went out.
             let word = largest_word(format.bits);
@@ -172,9 +176,10 @@ impl Design {
             let past = input.iter().zip(&self.u0);
             let past = past.map(|(range, u)| step(&(range + u.abs())));
             let input_step = input_step.unwrap_or_else(|| past.collect());
-            let reach = state.iter().zip(&self.x0);
-            let own = reach.map(|(range, x)| step(&(range + x.abs())));
-            let mut steps = format.state_step.take().unwrap_or_else(|| own.collect());
+            let mut steps = match format.state_step.take() {
+                Some(steps) => steps,
+                None => self.own_steps(state, word),
+            };
             for _ in 0..plant.delayed_inputs {
                 steps.extend(&input_step);
                 state.extend(&*input);
@@ -189,7 +194,47 @@ impl Design {
                 radius: loss.radius_fixed,
             });
         }
-        Ok(Fixed { ranges, law, loss })
+        Ok(Fixed {
+            ranges,
+            law,
+            sums,
+            loss,
+        })
+    }
+
+    /// The sums in fixed point: their ranges and steps join those of the plant's own states.
+    fn sums(
+        &self,
+        integral: &Integral,
+        ts_s: f64,
+        input: &[f64],
+        state: &mut Vec<f64>,
+        format: &mut Format,
+    ) -> Result<Sums, DesignError> {
+        let (own, word) = (self.plant.a.nrows(), largest_word(format.bits));
+        let range = integral.range(&self.gains.k, own, input);
+        let range = range.ok_or(DesignError::IntegralUnused)?;
+        let mut steps = match format.state_step.take() {
+            Some(steps) => steps,
+            None => self.own_steps(state, word),
+        };
+        let (shift, sum_step) = integral.in_words(ts_s, &steps, &range, word);
+        steps.extend(sum_step);
+        state.extend(range);
+        format.state_step = Some(steps);
+        Ok(Sums {
+            first: own,
+            joints: integral.joints.clone(),
+            shift,
+        })
+    }
+
+    /// Powers of two that let the plant's own states reach `range` about the operating point.
+    fn own_steps(&self, range: &[f64], word: f64) -> Vec<f64> {
+        let reach = range.iter().zip(&self.x0);
+        reach
+            .map(|(range, x)| power_of_two_above((range + x.abs()) / word))
+            .collect()
     }
 
     fn estimator(
@@ -205,33 +250,92 @@ impl Design {
         };
         let mut variance = vec![rounding_variance(sensors.position_step_rad); joints];
         variance.push(rounding_variance(sensors.gyro_step_rad_s));
+        let held = zoh(&self.plant, plant.ts_s, 0.0)?.b;
+        let of_inputs = |share: f64| {
+            let sd = share * DVector::from_column_slice(input_range);
+            let noisy = &held * DMatrix::from_diagonal(&sd);
+            &noisy * noisy.transpose()
+        };
         let process = match &sensors.process {
             Some(process) => process.matrix("W", own, "states")?,
-            None => {
-                let held = zoh(&self.plant, plant.ts_s, 0.0)?.b;
-                let sd = 0.01 * DVector::from_column_slice(input_range);
-                let noisy = held * DMatrix::from_diagonal(&sd);
-                &noisy * noisy.transpose()
-            }
+            None => of_inputs(0.01),
         };
+        let process = plant.whole_state("W", &process)?;
+        let recovery = of_inputs(sensors.recovery);
+        let mut taken = process.clone();
+        let mut own_part = taken.view_mut((0, 0), (own, own));
+        own_part += recovery;
         let measurement = DMatrix::from_diagonal(&variance.into());
-        let estimator = kalman(&plant, &process, &measurement)?;
+        let estimator = kalman(&plant, &taken, &measurement)?;
         let compensator = lqg(&plant, &self.gains, &estimator)?;
+        let stationary = stationary(&plant, &compensator, &process, &measurement);
         Ok(Estimation {
             outputs: self.states[..=joints].to_vec(),
             plant,
             estimator,
             compensator,
+            recovery: sensors.recovery,
+            stationary,
         })
     }
 }
 
+/// The error with its state by name; past inputs are not among the states that can lack anything.
+fn named(
+    error: DesignError,
+    model: &Model,
+    request: &Request,
+    integral: Option<&Integral>,
+) -> DesignError {
+    let ts_s = match request.time {
+        Time::Continuous => None,
+        Time::Sampled { ts_s, .. } => Some(ts_s),
+    };
+    error.of_states(&states(model, &[], integral, 0), ts_s)
+}
+
+/// The gains, the sampled plant with its delay, Q and R.
+type Solved = (Gains, Option<(Discrete, f64)>, [DMatrix<f64>; 2]);
+
+fn solved(
+    model: &Model,
+    request: &Request,
+    plant: &Continuous,
+    ranges: &Ranges,
+    integral: Option<&Integral>,
+) -> Result<Solved, DesignError> {
+    let weigh = |with_past| {
+        let weights = &request.weights;
+        weights.matrices(&ranges.state, &ranges.input, with_past)
+    };
+    let Time::Sampled { ts_s, delay_s } = request.time else {
+        if integral.is_some() {
+            return Err(DesignError::IntegralContinuous);
+        }
+        let [q, r] = weigh(plant.a.nrows())?;
+        return Ok((lqr(plant, &q, &r)?, None, [q, r]));
+    };
+    let delay_s = delay_s.map_or_else(|| input_delay_s(model), Ok)?;
+    let mut sampled = zoh(plant, ts_s, delay_s)?;
+    // Past inputs may be weighed, too, where there are no sums before them.
+    let weighed = integral.map_or(sampled.a.nrows(), |_| plant.a.nrows());
+    let [mut q, r] = weigh(weighed)?;
+    if let Some(integral) = integral {
+        sampled = integral.with_sums(&sampled);
+        q = integral.weight(&q);
+    }
+    let by_sampling = |error| by_sampling(error, plant, ts_s, integral.is_some());
+    let gains = dlqr(&sampled, &q, &r).map_err(by_sampling)?;
+    Ok((gains, Some((sampled, delay_s)), [q, r]))
+}
+
 /// A mode that no input reaches is the sampling time's doing where the inputs reach every mode of
 /// the plant in continuous time.
-fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64) -> DesignError {
+fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64, sums: bool) -> DesignError {
     match error {
         DesignError::Uncontrollable { mode, .. }
-            if mode.mode.pole.norm() <= MOST_GROWTH
+            if !sums
+                && mode.mode.pole.norm() <= MOST_GROWTH
                 && controllability(&plant.a, &plant.b).is_ok_and(|it| it.is_full()) =>
         {
             let fastest = poles(&plant.a).map_or(0.0, |poles| largest(&poles));
@@ -245,12 +349,74 @@ fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64) -> DesignError
     }
 }
 
-/// Angles, speeds of 0, then past inputs.
-fn point(pose_rad: &[f64], inputs: &[f64], delayed: usize) -> Vec<f64> {
+/// Angles, speeds of 0, sums of 0, then past inputs.
+fn point(pose_rad: &[f64], sums: usize, inputs: &[f64], delayed: usize) -> Vec<f64> {
     let mut point = pose_rad.to_vec();
-    point.resize(2 * pose_rad.len(), 0.0);
+    point.resize(2 * pose_rad.len() + sums, 0.0);
     for _ in 0..delayed {
         point.extend(inputs);
     }
     point
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Reason as _;
+    use std::path::Path;
+
+    const PENDULUM: &str = r#"
+[rig]
+name = "pendulum"
+angle_zero = "hanging"
+
+[[link]]
+com_m = 0.1
+mass_kg = 0.2
+inertia_kg_m2 = 1e-4
+
+[[joint]]
+drive = "torque"
+
+[log]
+time = { column = "time_s", unit = "s" }
+
+[[log.joint]]
+position = { column = "angle_rad", unit = "rad" }
+input = { column = "torque_nm", unit = "N m" }
+"#;
+
+    fn hanging(ts_s: f64) -> Result<Design, DesignError> {
+        let model = Model::parse(PENDULUM, Path::new("pendulum.toml")).unwrap();
+        let request = Request {
+            pose_rad: vec![0.0],
+            time: Time::Sampled {
+                ts_s,
+                delay_s: None,
+            },
+            ..Request::standard(&model)
+        };
+        Design::of(&model, &request)
+    }
+
+    /// A pendulum that swings by half a period in each sample looks the same whatever its phase: no
+    /// input parts its two modes, though one does between the samples.
+    #[test]
+    fn a_mode_that_sampling_hides_is_not_said_to_lack_a_drive() {
+        let design = hanging(0.01).unwrap();
+        assert!(design.controllability.is_full());
+        let half_period_s = std::f64::consts::PI / design.poles[0].im.abs();
+        let error = hanging(half_period_s).unwrap_err();
+        let DesignError::LostBySampling { mode, faster, .. } = &error else {
+            panic!("{error}")
+        };
+        assert!(*faster && mode.ts_s == Some(half_period_s), "{error:?}");
+        let said = error.to_string();
+        assert!(
+            said.contains("no input reaches it, though in continuous time") && said.contains("q1"),
+            "{said}"
+        );
+        assert_eq!(error.remedy(), "sample faster");
+        assert!(hanging(0.9 * half_period_s).is_ok());
+    }
 }

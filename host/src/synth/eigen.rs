@@ -13,17 +13,36 @@ const MOST_STEPS: usize = 300;
 /// Entries that are no numbers.
 pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, DesignError> {
     if a.iter().all(|value| value.is_finite()) {
+        let (rest, isolated) = isolated(a.clone());
         // Balancing squares the entries: near 1, none overflows.
         let size = 2f64.powi(a.amax().max(f64::MIN_POSITIVE).log2() as i32);
-        let mut balanced = a / size;
+        let mut balanced = rest / size;
         balance_parlett_reinsch(&mut balanced);
         if let Some(mut poles) = eigenvalues(balanced) {
             poles.iter_mut().for_each(|pole| *pole *= size);
+            poles.extend(isolated.into_iter().map(Complex::from));
             poles.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
             return Ok(poles);
         }
     }
     Err(DesignError::Eigenvalues)
+}
+
+/// A matrix without the states that act on no other or on which no other acts, and their
+/// eigenvalues, which stand on the diagonal: those of past inputs that nothing reads any more are 0.
+/// They come out exactly, and the QR steps may stand still where many of them are left in (Parlett,
+/// Reinsch, Numerische Mathematik 13 (1969) 293).
+fn isolated(mut a: DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
+    let mut values = Vec::new();
+    let alone = |a: &DMatrix<f64>, i: usize| {
+        let others = || (0..a.nrows()).filter(move |j| *j != i);
+        others().all(|j| a[(i, j)] == 0.0) || others().all(|j| a[(j, i)] == 0.0)
+    };
+    while let Some(place) = (0..a.nrows()).find(|i| alone(&a, *i)) {
+        values.push(a[(place, place)]);
+        a = a.remove_row(place).remove_column(place);
+    }
+    (a, values)
 }
 
 /// All eigenvalues, in no order; `None` if the QR steps do not converge.

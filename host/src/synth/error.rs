@@ -1,6 +1,7 @@
 //! Why no design follows from a model, weights and timing that are well formed.
 
 use super::eigen::Mode;
+use super::signal::Signal;
 use crate::error::Error;
 use std::fmt;
 
@@ -101,6 +102,10 @@ pub enum DesignError {
         least: f64,
         of: &'static str,
     },
+    #[error("integral action sums angles sample by sample, and continuous time has no samples")]
+    IntegralContinuous,
+    #[error("the gains of the integrals are singular: some sum acts on no input")]
+    IntegralUnused,
     #[error("the innovation's covariance is not positive definite")]
     Innovation,
 
@@ -170,12 +175,16 @@ pub enum DesignError {
 pub(super) const MOST_GROWTH: f64 = 10.0;
 
 /// A mode of a plant that a Riccati equation cannot move.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PlantMode {
     /// The mode.
     pub mode: Mode,
     /// Whether the plant is sampled.
     pub sampled: bool,
+    /// Sampling time, s, where it is known.
+    pub ts_s: Option<f64>,
+    /// Name of the state in which the mode shows most, where it is known.
+    pub state: Option<String>,
 }
 
 /// What a Riccati equation is solved for.
@@ -228,15 +237,46 @@ impl PlantMode {
 }
 
 impl fmt::Display for PlantMode {
-    /// "the mode with pole 1.07+0.2i, strongest in state 3".
+    /// "the mode with pole 6.77+1.2i 1/s, strongest in dq1"; per sample and by the state's number
+    /// where no more is known.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Mode { pole, state, .. } = self.mode;
-        write!(f, "the mode with pole {:.6}", pole.re)?;
+        let per_s = match self.ts_s {
+            // A pole at 0 has left within a sample.
+            Some(ts_s) if self.mode.pole.norm() > 0.0 => Some(self.mode.pole.ln() / ts_s),
+            _ => None,
+        };
+        let pole = per_s.unwrap_or(self.mode.pole);
+        write!(f, "the mode with pole {:.6}", pole.re + 0.0)?;
         if pole.im != 0.0 {
             write!(f, "{:+.6}i", pole.im)?;
         }
-        let unit = if self.sampled { "" } else { " 1/s" };
-        write!(f, "{unit}, strongest in state {}", state + 1)
+        let unit = if self.sampled && per_s.is_none() {
+            ""
+        } else {
+            " 1/s"
+        };
+        match &self.state {
+            Some(state) => write!(f, "{unit}, strongest in {state}"),
+            None => write!(f, "{unit}, strongest in state {}", self.mode.state + 1),
+        }
+    }
+}
+
+impl DesignError {
+    /// The same with the mode's state by its name and its pole in 1/s.
+    pub(super) fn of_states(mut self, states: &[Signal], ts_s: Option<f64>) -> DesignError {
+        use DesignError as E;
+        if let E::Uncontrollable { mode, .. }
+        | E::LostBySampling { mode, .. }
+        | E::Unweighted { mode, .. }
+        | E::NoSolution {
+            weakest: Some(mode),
+        } = &mut self
+        {
+            mode.ts_s = ts_s;
+            mode.state = states.get(mode.mode.state).map(|it| it.name.clone());
+        }
+        self
     }
 }
 
@@ -264,6 +304,7 @@ impl DesignError {
                 | E::Entry { .. }
                 | E::Indefinite { .. }
                 | E::NotDefinite { .. }
+                | E::IntegralContinuous
                 | E::WordLength(_)
                 | E::Count { .. }
                 | E::NotPositive { .. }

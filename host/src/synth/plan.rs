@@ -63,6 +63,9 @@ pub enum PlanReason {
         /// Past inputs in the state.
         delayed_inputs: usize,
     },
+    /// A plan with integral action.
+    #[error("`integral` is set: the plan's law acts on sums of angles too")]
+    Integral,
     /// A plan with an estimator.
     #[error("`estimator` is set: the plan's law acts on estimated states")]
     Estimator,
@@ -74,6 +77,10 @@ impl Reason for PlanReason {
             PlanReason::Estimator => {
                 "compare with the plan of a robot that measures its states: `handstand gains \
                  --state-space FILE.json` without --lqg"
+            }
+            PlanReason::Integral => {
+                "give the plan of a law on the states alone: `handstand gains --state-space \
+                 FILE.json` without --integral"
             }
             PlanReason::Size { .. } => "give the plan that was made for this robot",
             _ => "write the plan with `handstand gains MODEL --state-space FILE.json`",
@@ -108,6 +115,9 @@ impl StateFeedbackPlan {
 }
 
 fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, PlanReason> {
+    if value.get("integral").is_some_and(|it| !it.is_null()) {
+        return Err(PlanReason::Integral);
+    }
     let joints = model.link_count();
     let drives = model.driven_joints().len();
     let sampled = value.get("sampled").filter(|sampled| !sampled.is_null());

@@ -15,6 +15,8 @@ pub struct Request {
     pub pose_rad: Vec<f64>,
     /// Weights of states and inputs.
     pub weights: CostWeights,
+    /// Weight of the sums of the driven joints' angles, where the law shall have them, 1/(rad s)^2.
+    pub integral: Option<Weight>,
     /// How the gains will run.
     pub time: Time,
     /// Sensors and noise, for an estimator.
@@ -37,6 +39,7 @@ impl Request {
         Request {
             pose_rad: upright(model),
             weights: CostWeights::BRYSON,
+            integral: None,
             time: Time::Sampled {
                 ts_s: 0.01,
                 delay_s: None,
@@ -124,4 +127,7 @@ pub struct Sensors {
     /// Covariance of the process noise; without it, that of inputs that err by a hundredth of their
     /// range.
     pub process: Option<Weight>,
+    /// Loop transfer recovery: the filter is designed as if the inputs erred by so large a share of
+    /// their ranges, too (standard deviation); 0 is the filter of least variance.
+    pub recovery: f64,
 }

@@ -1,5 +1,6 @@
 //! Names and units of states and inputs, and the default limits of inputs.
 
+use super::integral::Integral;
 use crate::model::{Drive, Model};
 
 /// What a weight is by definition, m/s^2.
@@ -55,8 +56,13 @@ pub(super) fn default_limit(model: &Model, joint: usize) -> f64 {
     }
 }
 
-/// Angles, speeds, then past inputs, the latest first.
-pub(super) fn states(model: &Model, inputs: &[Signal], delayed: usize) -> Vec<Signal> {
+/// Angles, speeds, sums of angles, then past inputs, the latest first.
+pub(super) fn states(
+    model: &Model,
+    inputs: &[Signal],
+    integral: Option<&Integral>,
+    delayed: usize,
+) -> Vec<Signal> {
     let of = |prefix: &'static str, order: usize| {
         (0..model.link_count()).map(move |joint| Signal {
             name: format!("{prefix}{}", joint + 1),
@@ -69,5 +75,7 @@ pub(super) fn states(model: &Model, inputs: &[Signal], delayed: usize) -> Vec<Si
             unit: input.unit,
         })
     });
-    of("q", 0).chain(of("dq", 1)).chain(past).collect()
+    let sums = integral.map(|integral| integral.signals(model));
+    let own = of("q", 0).chain(of("dq", 1));
+    own.chain(sums.into_iter().flatten()).chain(past).collect()
 }

@@ -6,6 +6,7 @@
 
 use super::design::Design;
 use super::error::DesignError;
+use super::integral::Integral;
 use super::operating_point::OperatingPoint;
 use crate::model::{Angles, Model};
 use nalgebra::{DMatrix, DVector};
@@ -20,7 +21,8 @@ pub struct Stiffness {
     pub lean_per_torque: DMatrix<f64>,
     /// Departure of each joint per dead zone that starts at zero and is as wide as the whole limit
     /// of its input, for the signs of the inputs that bring the largest lean and keep themselves
-    /// up; none if no signs do, of more than ten inputs, or in continuous time.
+    /// up; none if no signs do, of more than ten inputs, in continuous time, or with integral
+    /// action, which hunts in a dead zone.
     pub lean_per_dead_zone: Option<DVector<f64>>,
 }
 
@@ -30,16 +32,14 @@ pub struct Stiffness {
 /// A pose that is no equilibrium, a loop with a pole on the edge of stability.
 pub fn stiffness(model: &Model, design: &Design) -> Result<Stiffness, DesignError> {
     let n = model.link_count();
-    let point = OperatingPoint::of(model, &design.x0[..n])?;
-    let mass = point.equations.mass(&point.relative_rad);
-    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
-        model: model.name.clone(),
-    })?;
-    let convention = match model.angles {
-        Angles::Relative => DMatrix::identity(n, n),
-        Angles::Absolute => DMatrix::from_element(n, n, 1.0).lower_triangle(),
-    };
+    let torque = torque_inputs(model, &design.x0[..n])?;
     let (states, inputs) = design.plant.b.shape();
+    if let Some(integral) = &design.integral {
+        return Ok(Stiffness {
+            lean_per_torque: with_sums(design, integral, &torque)?,
+            lean_per_dead_zone: None,
+        });
+    }
     // At rest every past input is the present one.
     let k = &design.gains.k;
     let mut one = DMatrix::identity(inputs, inputs);
@@ -53,9 +53,6 @@ pub fn stiffness(model: &Model, design: &Design) -> Result<Stiffness, DesignErro
     }) else {
         return Err(DesignError::Eigenvalues);
     };
-    let mut torque = DMatrix::zeros(states, n);
-    let accelerate = convention * mass.inverse();
-    torque.view_mut((n, 0), (n, n)).copy_from(&accelerate);
     let lean_per_torque = (-&closed * torque).rows(0, n).into_owned();
     let per_input = -&closed * &design.plant.b;
     let lean_per_dead_zone = design.fixed.as_ref().and_then(|fixed| {
@@ -66,6 +63,49 @@ pub fn stiffness(model: &Model, design: &Design) -> Result<Stiffness, DesignErro
         lean_per_torque,
         lean_per_dead_zone: lean_per_dead_zone.map(|lean| lean.rows(0, n).into_owned()),
     })
+}
+
+/// How a torque at each joint (columns) accelerates the states [angles, speeds] in a pose: 2 n x n.
+///
+/// # Errors
+/// A pose that is no equilibrium.
+pub fn torque_inputs(model: &Model, pose_rad: &[f64]) -> Result<DMatrix<f64>, DesignError> {
+    let n = model.link_count();
+    let point = OperatingPoint::of(model, pose_rad)?;
+    let mass = point.equations.mass(&point.relative_rad);
+    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
+        model: model.name.clone(),
+    })?;
+    let convention = match model.angles {
+        Angles::Relative => DMatrix::identity(n, n),
+        Angles::Absolute => DMatrix::from_element(n, n, 1.0).lower_triangle(),
+    };
+    let mut torque = DMatrix::zeros(2 * n, n);
+    let accelerate = convention * mass.inverse();
+    torque.view_mut((n, 0), (n, n)).copy_from(&accelerate);
+    Ok(torque)
+}
+
+/// With sums the driven joints rest at the pose, and the inputs are whatever it takes: 0 = A x + B u
+/// + `torque` d, 0 = q of the joints that are summed.
+fn with_sums(
+    design: &Design,
+    integral: &Integral,
+    torque: &DMatrix<f64>,
+) -> Result<DMatrix<f64>, DesignError> {
+    let (states, inputs) = design.plant.b.shape();
+    let size = states + inputs;
+    let mut rest = DMatrix::zeros(size, size);
+    rest.view_mut((0, 0), (states, states))
+        .copy_from(&design.plant.a);
+    rest.view_mut((0, states), (states, inputs))
+        .copy_from(&design.plant.b);
+    for (sum, joint) in integral.joints.iter().enumerate() {
+        rest[(states + sum, *joint)] = 1.0;
+    }
+    let push = -torque.clone().resize_vertically(size, 0.0);
+    let lean = rest.lu().solve(&push).ok_or(DesignError::Eigenvalues)?;
+    Ok(lean.rows(0, states / 2).into_owned())
 }
 
 /// Where the loop rests if each input lacks its limit: with signs that the inputs there have.

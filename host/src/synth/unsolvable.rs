@@ -22,14 +22,19 @@ impl Problem<'_> {
             let counted = modes.into_iter().filter(counts);
             let weakest = counted.min_by(|a, b| a.margin.total_cmp(&b.margin));
             let sampled = self.time == TimeDomain::Discrete;
-            weakest.map(|mode| PlantMode { mode, sampled })
+            weakest.map(|mode| PlantMode {
+                mode,
+                sampled,
+                ts_s: None,
+                state: None,
+            })
         };
         let immovable = |mode: &PlantMode| mode.mode.margin < UNCONTROLLABLE;
         let weakest_driven = match modes(self.a, self.b) {
             Ok(modes) => weakest(modes, &lasting),
             Err(error) => return error,
         };
-        if let Some(mode) = weakest_driven.filter(immovable) {
+        if let Some(mode) = weakest_driven.clone().filter(immovable) {
             return DesignError::Uncontrollable { mode, role };
         }
         if let Ok(modes) = modes(&self.a.transpose(), self.q)

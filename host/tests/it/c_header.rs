@@ -5,7 +5,7 @@ use crate::common::Bench;
 use handstand::Model;
 use handstand::sim::closed_loop::{Controller as _, Measurement};
 use handstand::synth::controllers::FixedPointFeedback;
-use handstand::synth::export::{Provenance, c_header};
+use handstand::synth::export::{Provenance, c_header, rust_file};
 use handstand::synth::{CostWeights, Design, Fixed, Request, Time, Weight};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -146,7 +146,7 @@ int main(void)
 /// Inputs in steps of the controller that a verification puts into the loop, given the states of
 /// these steps in SI.
 fn in_the_loop(design: &Design, fixed: &Fixed, x: &[i64]) -> Vec<i64> {
-    let law = FixedPointFeedback::new(fixed.law.clone(), &design.x0, 3);
+    let law = FixedPointFeedback::new(fixed.law.clone(), None, &design.x0, 3);
     let steps = x.iter().zip(&fixed.law.state_step);
     let si: Vec<f64> = steps.map(|(x, step)| *x as f64 * step).collect();
     let off = |place: usize| si[place] - design.x0[place];
@@ -167,6 +167,122 @@ fn in_the_loop(design: &Design, fixed: &Fixed, x: &[i64]) -> Vec<i64> {
 fn seed(design: usize) -> u32 {
     1 + 7919 * design as u32
 }
+
+/// A run of the law with integral action, limits and saturated sums among it: the
+/// compiled headers of C and Rust and the controller of the simulated loop, step by step.
+#[test]
+fn sums_are_kept_as_in_the_simulated_loop() {
+    let model = Model::parse(MODEL, Path::new("handstand.toml")).unwrap();
+    let request = Request {
+        integral: Some(Weight::Diagonal(vec![100.0, 30.0])),
+        time: Time::Sampled {
+            ts_s: 0.01,
+            delay_s: Some(0.0),
+        },
+        ..Request::standard(&model)
+    };
+    let design = Design::of(&model, &request).unwrap();
+    let fixed = design.fixed.as_ref().unwrap();
+    let bench = Bench::new();
+    bench.put("law.h", c_header(&design, fixed, &made(), "law"));
+    bench.put("law.rs", rust_file(&design, fixed, &made()));
+    bench.put("sums.c", SUMS_C);
+    bench.put("sums.rs", SUMS_RS);
+    let (c, rust) = (bench.path("sums"), bench.path("sums_rs"));
+    silent(
+        Command::new("cc")
+            .args(STRICT)
+            .args(["-std=c99", "-O1", "-o"])
+            .args([&c, &bench.path("sums.c")]),
+    );
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    silent(
+        Command::new(rustc)
+            .args(["--edition", "2024", "-O", "-A", "dead_code", "-o"])
+            .args([&rust, &bench.path("sums.rs")]),
+    );
+    let loops = FixedPointFeedback::new(fixed.law.clone(), fixed.sums.clone(), &design.x0, 3);
+    let mut memory = vec![0.0; loops.memory_len()];
+    loops.reset(&mut memory);
+    let (mut random, mut expected) = (Random(1), String::new());
+    let (mut limited, mut largest) = (0, 0.0_f64);
+    for k in 0..STEPS {
+        // Small departures for long, one way and the other, then large ones: limits act.
+        let shift = if k % 500 < 450 { 12 } else { 2 };
+        let mut word = || {
+            let word = i32::from((random.next() as u16).cast_signed()) >> shift;
+            word + if k % 200 < 100 { 6 } else { -6 }
+        };
+        let raw: [i32; 6] = std::array::from_fn(|i| word() + fixed.law.x0[i] as i32);
+        let si = |i: usize| f64::from(raw[i]) * fixed.law.state_step[i] - design.x0[i];
+        let (angle_rad, speed_rad_s): ([f64; 3], [f64; 3]) =
+            (std::array::from_fn(si), std::array::from_fn(|i| si(3 + i)));
+        let measured = Measurement {
+            angle_rad: &angle_rad,
+            speed_rad_s: &speed_rad_s,
+        };
+        let mut command = [0.0; 2];
+        loops.control(&mut memory, measured, &mut command);
+        let u: [i64; 2] =
+            std::array::from_fn(|i| (command[i] / fixed.law.input_step[i]).round() as i64);
+        limited += usize::from((0..2).any(|i| fixed.law.limits[i].contains(&u[i])));
+        largest = largest.max(memory[0].abs());
+        let _ = writeln!(expected, "{} {} {} {}", u[0], u[1], memory[0], memory[1]);
+    }
+    assert!(
+        (50..STEPS / 2).contains(&limited) && largest > 500.0,
+        "{limited} {largest}"
+    );
+    for program in [c, rust] {
+        let ran = Command::new(&program).output().unwrap();
+        let said = String::from_utf8(ran.stdout).unwrap();
+        assert!(said == expected, "{program:?}: {said:.300} {expected:.300}");
+    }
+}
+
+const STEPS: usize = 4000;
+
+const SUMS_C: &str = r#"
+#include "law.h"
+#include <stdio.h>
+static uint32_t seed = 1u;
+static uint16_t next(void)
+{
+    seed = seed * 1664525u + 1013904223u;
+    return (uint16_t)(seed >> 16);
+}
+int main(void)
+{
+    int16_t x[LAW_STATES] = {0}, u[LAW_INPUTS];
+    int32_t sums[LAW_SUMS] = {0};
+    for (int k = 0; k < 4000; k++) {
+        for (int j = 0; j < 6; j++)
+            x[j] = (int16_t)(((int16_t)next() >> (k % 500 < 450 ? 12 : 2)) + (k % 200 < 100 ? 6 : -6)
+                             + law_x0[j]);
+        law_control(x, u);
+        law_integrate(sums, x, u);
+        printf("%d %d %ld %ld\n", u[0], u[1], (long)sums[0], (long)sums[1]);
+    }
+    return 0;
+}
+"#;
+
+const SUMS_RS: &str = r#"
+mod law { include!("law.rs"); }
+fn main() {
+    let (mut seed, mut x, mut sums) = (1_u32, [0_i16; 8], [0_i32; 2]);
+    for k in 0..4000 {
+        for (x, x0) in x[..6].iter_mut().zip(law::X0) {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *x = ((seed >> 16) as u16 as i16) >> if k % 500 < 450 { 12 } else { 2 };
+            *x += x0 + if k % 200 < 100 { 6 } else { -6 };
+        }
+        let u = law::control(&x);
+        law::integrate(&mut sums, &mut x, &u);
+        println!("{} {} {} {}", u[0], u[1], sums[0], sums[1]);
+    }
+}
+"#;
 
 const TWO: &str = r#"
 #define GAINS_TEST

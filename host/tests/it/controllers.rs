@@ -114,3 +114,17 @@ fn one_sample_of_delay_is_too_much_for_the_paper_s_gains() {
     );
     assert_eq!(data["paths"].as_array().unwrap().len(), 18);
 }
+
+/// A delay that `best` does not know: its filter's first gains do not fell it, nor ask for much.
+#[test]
+fn the_best_controller_bears_a_delay_that_it_does_not_know() {
+    let line = "study sweep delay --controller best --levels 0,1,2,5,8 --runs 60 --json";
+    let sweep = Bench::new().run(line).json();
+    let levels = sweep[0]["levels"].as_array().unwrap();
+    assert_eq!(levels.len(), 5);
+    for level in levels {
+        let figures = &level["figures"];
+        assert_eq!(figures["stabilised"], 60, "{level}");
+        assert!(figures["rms_torque_nm"].as_f64().unwrap() < 0.15, "{level}");
+    }
+}

@@ -1,8 +1,12 @@
 //! What a plan takes of a model, and what the torque limit allows, as tables.
 
 use crate::cli::show::table_of;
-use handstand::deploy::{EffectUse, ModeLimit};
+use handstand::deploy::{EffectUse, ModeLimit, ObserverLoop};
 use handstand::output::table::TableColumn;
+use handstand::report::input_margins_text;
+
+/// Lasting torque whose lean is said, N m.
+const TORQUE_NM: f64 = 0.01;
 
 /// A line for each unstable mode.
 pub fn limits_table(limits: &[ModeLimit]) -> String {
@@ -20,6 +24,24 @@ pub fn limits_table(limits: &[ModeLimit]) -> String {
         }),
     ];
     table_of(limits, columns).to_string()
+}
+
+/// Margins of the observer's loop, and where a lasting torque on the bar leaves the robot.
+pub fn observer_text(of: &ObserverLoop) -> String {
+    let margins = input_margins_text(of.margins.as_ref(), &["shoulder", "hip"]);
+    let lean = of.lean_per_torque.as_ref().map_or(String::new(), |lean| {
+        let deg: Vec<String> = lean
+            .column(0)
+            .iter()
+            .map(|per_nm| format!("{:+.2}", (TORQUE_NM * per_nm).to_degrees()))
+            .collect();
+        format!(
+            "\nIts offsets act as integrals: under a lasting {TORQUE_NM} N m on the bar it rests where \
+             gravity balances it, bar, shoulder and hip at {} deg",
+            deg.join(", ")
+        )
+    });
+    margins + &lean
 }
 
 /// A line for each effect of a model: where its plan has it.

@@ -34,7 +34,8 @@
 //! `fingerprint`, `bytes`, `uploaded`, `states_replayed`, `limits` (of each unstable mode
 //! `pole_per_s`, `answer_s`, `growth`, `degree_share`, `half_step_share`; empty with `--law
 //! state`), `effects` (`effect`, `place`, `how`: what the plan takes of the model, and what it
-//! cannot), `radius` (of a law on plain states), `verdict` (`stood`, `holds`, `attempts`).
+//! cannot), `radius` (of a law on plain states), `margins` (at the inputs) and
+//! `lean_per_torque` (of the observer's loop), `verdict` (`stood`, `holds`, `attempts`).
 
 pub mod board;
 mod build;
@@ -46,14 +47,16 @@ use super::port::Port;
 use super::{ExitStatus, Talk, gains};
 use board::BoardArgs;
 use clap::ValueEnum as _;
-use handstand::deploy::{self, BoardLaw, ModeLimit, PlanBasis, plan_file};
+use handstand::deploy::{self, BoardLaw, ModeLimit, ObserverLoop, PlanBasis, plan_file};
 use handstand::link::Session;
 use handstand::link::boot_loader::Image;
 use handstand::output::write_new;
+use handstand::report::place_margins_json;
+use handstand::synth::rows;
 use handstand::{Error, Model, Result};
 use handstand_shared::plan::Plan;
-use limits::limits_table;
 pub use limits::uses_table;
+use limits::{limits_table, observer_text};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -155,6 +158,8 @@ struct Planned {
     limits: Vec<ModeLimit>,
     /// Spectral radius of the loop of a law on plain states.
     radius: Option<f64>,
+    /// Margins and stiffness of the loop with the observer.
+    observer: Option<ObserverLoop>,
 }
 
 /// Designs; the files of a design are written.
@@ -173,9 +178,17 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Planned> {
             plan: basis.plan(&model)?,
             limits: deploy::mode_limits(&model, board, &basis.timing)?,
             radius: None,
+            observer: Some(deploy::observer_loop(&model, &basis)?),
             model,
             basis,
         });
+    }
+    if args.gains.is_integral() {
+        return Err(Error::usage(
+            "the CM-5's plan has no place for the sums of --integral",
+            "leave --law out: the observer estimates lasting torques; or put the file of --c or \
+             --rust into a firmware of your own",
+        ));
     }
     let (reduced, request, made) =
         gains::requested(&args.gains, talk).map_err(gains::of_options)?;
@@ -200,6 +213,7 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Planned> {
         plan,
         limits: Vec::new(),
         radius: Some(radius),
+        observer: None,
     })
 }
 
@@ -245,6 +259,10 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         "limits": made.limits,
         "effects": made.basis.uses,
         "radius": made.radius,
+        "margins": place_margins_json(
+            made.observer.as_ref().and_then(|it| it.margins.as_ref()),
+        ),
+        "lean_per_torque": made.observer.as_ref().map(|it| it.lean_per_torque.as_ref().map(rows)),
         "verdict": verdict.as_ref(),
     });
     talk.result(&data, || {
@@ -252,6 +270,7 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         if !made.limits.is_empty() {
             parts.push(limits_table(&made.limits));
         }
+        parts.extend(made.observer.as_ref().map(observer_text));
         parts.push(verdict::words(verdict.as_ref(), &plan));
         parts.push(format!("fingerprint {fingerprint}, {bytes} bytes"));
         parts.join("\n")

@@ -138,6 +138,7 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
             .gyro_step
             .unwrap_or(10.0 * std::f64::consts::PI / 180.0),
         process: read(&args.process)?,
+        recovery: args.recovery.unwrap_or(0.0),
     };
     let request = Request {
         pose_rad,
@@ -148,6 +149,7 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
             },
             None => standard.weights,
         },
+        integral: read(&args.integral)?,
         time,
         sensors: args.lqg.then_some(sensors),
         readings: Readings {

@@ -219,6 +219,7 @@ fn verified(effects: &[(&str, usize, &[f64])]) -> Verification {
     let request = Request {
         pose_rad: upright(&model),
         weights: CostWeights::PAPER,
+        integral: None,
         time: Time::Sampled {
             ts_s: 0.01,
             delay_s: None,

@@ -2,7 +2,7 @@
 
 use crate::sim::closed_loop::state_feedback::remember;
 use crate::sim::closed_loop::{Controller, Measurement};
-use crate::synth::FixedLaw;
+use crate::synth::{FixedLaw, Sums};
 use handstand_shared::law::RowRef;
 
 /// Bits of the words that ship.
@@ -14,6 +14,8 @@ const SHIPPED_BITS: u32 = 16;
 #[derive(Debug, Clone)]
 pub struct FixedPointFeedback {
     law: FixedLaw,
+    /// Sums of angles among the states, which it keeps as the caller of the exported law does.
+    sums: Option<Sums>,
     /// The pose about which a loop's measurements count, SI: angles, then speeds of 0.
     pose: Vec<f64>,
     /// Past inputs at the beginning, SI.
@@ -30,10 +32,11 @@ struct Words {
 }
 
 impl FixedPointFeedback {
-    /// The law in a loop about `x0`, SI: angles, speeds, then past inputs as they are before the
-    /// first sample.
-    pub fn new(law: FixedLaw, x0: &[f64], joints: usize) -> FixedPointFeedback {
-        let (pose, past) = x0.split_at(2 * joints);
+    /// The law in a loop about `x0`, SI: angles, speeds, sums, then past inputs as they are before
+    /// the first sample.
+    pub fn new(law: FixedLaw, sums: Option<Sums>, x0: &[f64], joints: usize) -> FixedPointFeedback {
+        let (pose, rest) = x0.split_at(2 * joints);
+        let past = &rest[sums.as_ref().map_or(0, |sums| sums.joints.len())..];
         let word = |value: &i64| *value as i16;
         let words = (law.bits == SHIPPED_BITS).then(|| Words {
             k: law
@@ -47,8 +50,13 @@ impl FixedPointFeedback {
             pose: pose.to_vec(),
             past: past.to_vec(),
             words,
+            sums,
             law,
         }
+    }
+
+    fn sum_count(&self) -> usize {
+        self.sums.as_ref().map_or(0, |sums| sums.joints.len())
     }
 
     /// Inputs in steps for states in steps.
@@ -73,21 +81,41 @@ impl FixedPointFeedback {
 
 impl Controller for FixedPointFeedback {
     fn memory_len(&self) -> usize {
-        self.past.len()
+        self.sum_count() + self.past.len()
     }
 
     fn reset(&self, memory: &mut [f64]) {
-        memory.copy_from_slice(&self.past);
+        let (sums, past) = memory.split_at_mut(self.sum_count());
+        sums.fill(0.0);
+        past.copy_from_slice(&self.past);
     }
 
     fn control(&self, memory: &mut [f64], measured: Measurement<'_>, command: &mut [f64]) {
         let departures = measured.angle_rad.iter().chain(measured.speed_rad_s);
         let own = self.pose.iter().zip(departures).map(|(x0, x)| x0 + x);
-        let x: Vec<f64> = own.chain(memory.iter().copied()).collect();
-        self.raw(&self.law.states(&x), |i, u| {
+        // Sums are kept in integers, which a float of this width holds exactly.
+        let (kept, past) = memory.split_at_mut(self.sum_count());
+        let mut sums: Vec<i64> = kept.iter().map(|sum| *sum as i64).collect();
+        let x = own.chain(kept.iter().copied()).chain(past.iter().copied());
+        let mut x = self.law.states(&x.collect::<Vec<f64>>());
+        if let Some(counted) = &self.sums {
+            let places = x[counted.first..].iter_mut();
+            for (x, state) in places.zip(counted.states(&sums)) {
+                *x = state;
+            }
+        }
+        let mut is_limited = false;
+        self.raw(&x, |i, u| {
+            is_limited |= self.law.limits[i].contains(&u);
             command[i] = u as f64 * self.law.input_step[i];
         });
-        remember(memory, command);
+        remember(past, command);
+        if let Some(counted) = self.sums.as_ref().filter(|_| !is_limited) {
+            counted.add(&mut sums, &x, &self.law.x0);
+            for (kept, sum) in kept.iter_mut().zip(&sums) {
+                *kept = *sum as f64;
+            }
+        }
     }
 }
 
@@ -114,7 +142,7 @@ mod tests {
         };
         let design = Design::of(&model, &request).unwrap();
         let law = design.fixed.as_ref().unwrap().law.clone();
-        let words = FixedPointFeedback::new(law.clone(), &design.x0, 3);
+        let words = FixedPointFeedback::new(law.clone(), None, &design.x0, 3);
         assert!(words.words.is_some() && words.memory_len() == 4);
         let mut random = stream(7, 0);
         let mut memory = vec![0.0; words.memory_len()];

@@ -65,5 +65,5 @@ fn fixed_point(model: &DesignModel, k: &DMatrix<f64>) -> Result<FixedPointFeedba
     };
     let (x0, u0) = (vec![0.0; k.ncols()], vec![0.0; k.nrows()]);
     let law = quantise(k, &x0, &u0, &ranges, &format)?;
-    Ok(FixedPointFeedback::new(law, &x0, joints))
+    Ok(FixedPointFeedback::new(law, None, &x0, joints))
 }

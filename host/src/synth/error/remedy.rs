@@ -33,6 +33,8 @@ impl Reason for DesignError {
             | E::Asymmetric { .. }
             | E::Indefinite { .. }
             | E::NotDefinite { .. } => return self.matrix_remedy(),
+            E::IntegralContinuous => "leave out one of the two",
+            E::IntegralUnused => "raise the weight of the integrals",
             E::Innovation => "raise the measurement noise V",
             E::Eigenvalues => "look for entries that are not numbers or of very different size",
             E::Uncontrollable { mode, .. }

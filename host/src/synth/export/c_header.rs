@@ -1,7 +1,7 @@
 //! The gains as a C header that compiles by itself.
 
 use super::Provenance;
-use super::c_text::{C_LAW, C_TABLE, C_TEST};
+use super::c_text::{C_LAW, C_SUMS, C_TABLE, C_TEST};
 use super::golden::golden;
 use super::values::{head, list};
 use crate::synth::{Design, Fixed, FixedLaw, Signal, rows};
@@ -28,8 +28,13 @@ pub fn c_header(design: &Design, fixed: &Fixed, made: &Provenance, name: &str) -
     for line in head(design, fixed, made) {
         let _ = writeln!(text, " * {}", line.replace("*/", "* /"));
     }
-    let body =
-        macros(design, law) + &table(law) + &asserts(law) + C_LAW + &past(design) + &test(law);
+    let body = macros(design, law)
+        + &table(law)
+        + &asserts(law)
+        + C_LAW
+        + &sums(fixed)
+        + &past(design)
+        + &test(law);
     let _ = write!(text, " */\n{}", named(&body, name));
     text
 }
@@ -135,6 +140,17 @@ typedef char %_assert_int32[sizeof(int32_t) == 4 ? 1 : -1];
         );
     }
     text
+}
+
+/// Sums of angles are states that the caller keeps.
+fn sums(fixed: &Fixed) -> String {
+    fixed.sums.as_ref().map_or_else(String::new, |sums| {
+        C_SUMS
+            .replace("<count>", &sums.joints.len().to_string())
+            .replace("<first>", &sums.first.to_string())
+            .replace("<joints>", &list(&sums.joints))
+            .replace("<shift>", &list(&sums.shift))
+    })
 }
 
 /// Past inputs are states that the caller keeps.

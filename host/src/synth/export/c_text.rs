@@ -66,6 +66,34 @@ static inline void %_control(const int16_t x[@_STATES], int16_t u[@_INPUTS])
 }
 ";
 
+/// Integral action.
+pub(super) const C_SUMS: &str = "
+/* Integral action: of the states, <count> from place <first> on are sums of angles. Keep sums, 0 at
+   the start, and call this with x and u after each %_control, before x is filled for the next
+   sample: it adds the angles of x to the sums, unless an input is at its limit, and puts the sums
+   into x. */
+#define @_SUMS <count>
+static GAINS_CONST uint8_t %_sum_of[@_SUMS] = {<joints>};
+static GAINS_CONST uint8_t %_sum_shift[@_SUMS] = {<shift>};
+static inline void %_integrate(int32_t sums[@_SUMS], int16_t x[@_STATES], const int16_t u[@_INPUTS])
+{
+    for (uint8_t i = 0; i < @_INPUTS; i++) {
+        if (u[i] == GAINS_READ_16(&%_limits[i][0])) return;
+        if (u[i] == GAINS_READ_16(&%_limits[i][1])) return;
+    }
+    for (uint8_t j = 0; j < @_SUMS; j++) {
+        const uint8_t joint = GAINS_READ_8(&%_sum_of[j]);
+        const uint8_t shift = GAINS_READ_8(&%_sum_shift[j]);
+        const int32_t most = (int32_t)INT16_MAX << shift;
+        int32_t step = (int32_t)x[joint] - GAINS_READ_16(&%_x0[joint]);
+        if (sums[j] > most - step && step > 0) step = most - sums[j];
+        if (sums[j] < -most - step && step < 0) step = -most - sums[j];
+        sums[j] += step;
+        x[<first> + j] = (int16_t)(sums[j] >> shift);
+    }
+}
+";
+
 /// Vectors that any implementation can be checked by.
 pub(super) const C_TEST: &str = "
 /* With `#define GAINS_TEST`: states, the inputs that a right law gives for them, and a check. */

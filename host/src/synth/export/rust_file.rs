@@ -72,5 +72,34 @@ pub const GOLDEN: [([i16; {n}], [i16; {m}]); {}] = [
         vectors.len(),
         vectors.concat(),
     );
+    if let Some(sums) = &fixed.sums {
+        let _ = write!(
+            text,
+            "
+/// Integral action: the joints whose angles are summed; their sums are the states from {first} on.
+pub const SUM_OF: [usize; {count}] = [{}];
+/// Places by which a sum is shifted right to make its state.
+pub const SUM_SHIFT: [u8; {count}] = [{}];
+
+/// After each `control`, before `x` is filled for the next sample: adds the angles of `x` to the
+/// sums, which are 0 at the start, unless an input is at its limit, and puts the sums into `x`.
+pub fn integrate(sums: &mut [i32; {count}], x: &mut [i16; {n}], u: &[i16; {m}]) {{
+    if u.iter().zip(&LIMITS).any(|(u, limits)| limits.contains(u)) {{
+        return;
+    }}
+    for j in 0..{count} {{
+        let most = i32::from(i16::MAX) << SUM_SHIFT[j];
+        let step = i32::from(x[SUM_OF[j]]) - i32::from(X0[SUM_OF[j]]);
+        sums[j] = sums[j].saturating_add(step).clamp(-most, most);
+        x[{first} + j] = (sums[j] >> SUM_SHIFT[j]) as i16;
+    }}
+}}
+",
+            list(&sums.joints),
+            list(&sums.shift),
+            first = sums.first,
+            count = sums.joints.len(),
+        );
+    }
     text
 }

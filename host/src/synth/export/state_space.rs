@@ -29,6 +29,10 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
         "x0": design.x0,
         "u0": design.u0,
         "omitted_effects": design.omitted.iter().map(omitted).collect::<Vec<Value>>(),
+        "integral": design.integral.as_ref().map(|integral| json!({
+            "joints": one_based(&integral.joints),
+            "weights": integral.weights,
+        })),
         "q": rows(q),
         "r": rows(r),
         "k": rows(&gains.k),
@@ -89,6 +93,11 @@ fn estimator(estimation: &Estimation) -> Value {
             "d": rows(&controller.d),
         },
         "loop_poles": complex(&controller.loop_poles),
+        "recovery": estimation.recovery,
+        "stationary": estimation.stationary.as_ref().map(|stationary| json!({
+            "state_rms": stationary.state_rms,
+            "input_rms": stationary.input_rms,
+        })),
     })
 }
 
@@ -105,6 +114,11 @@ fn fixed(fixed: &Fixed) -> Value {
         "input_step": law.input_step,
         "state_range": fixed.ranges.state,
         "input_range": fixed.ranges.input,
+        "sums": fixed.sums.as_ref().map(|sums| json!({
+            "first_state": sums.first + 1,
+            "joints": one_based(&sums.joints),
+            "shift": sums.shift,
+        })),
         "fingerprint": law.fingerprint(),
         "gain_error": loss.gain_error,
         "state_error": loss.state_error,
@@ -113,6 +127,10 @@ fn fixed(fixed: &Fixed) -> Value {
         "spectral_radius": loss.radius,
         "spectral_radius_fixed": loss.radius_fixed,
     })
+}
+
+fn one_based(joints: &[usize]) -> Vec<usize> {
+    joints.iter().map(|joint| joint + 1).collect()
 }
 
 fn signals(signals: &[Signal]) -> Vec<Value> {

@@ -4,7 +4,7 @@ use super::format::{digits, plain, several};
 use super::values::{list, names};
 use crate::output::number::short;
 use crate::synth::eigen::largest;
-use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect};
+use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect, Signal};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::DMatrix;
 
@@ -45,6 +45,13 @@ pub fn text(design: &Design) -> String {
             plant.delayed_inputs * design.inputs.len()
         ),
     });
+    if design.integral.is_some() {
+        let sums = design.states.iter().filter(|s| s.name.starts_with("int_"));
+        parts.push(format!(
+            "Integral action: {} are sums of angles over time, which the law's caller keeps",
+            list(sums.map(|sum| sum.name.as_str()))
+        ));
+    }
     parts.extend(omitted_lines(&design.omitted));
     parts.push(String::new());
     parts.push(gain_table(design));
@@ -125,7 +132,21 @@ fn right(table: &mut Table) {
 }
 
 fn plant_lines(design: &Design) -> Vec<String> {
-    let unstable = design.poles.iter().filter(|pole| pole.re > 0.0).count();
+    // Rounding scatters poles at 0, by the root of itself where two meet.
+    let size = design.plant.a.norm().max(1.0);
+    let marginal = design
+        .poles
+        .iter()
+        .filter(|pole| pole.re.abs() <= 1e-7 * size);
+    let marginal = match marginal.count() {
+        0 => String::new(),
+        count => format!(", {count} marginal"),
+    };
+    let unstable = design
+        .poles
+        .iter()
+        .filter(|pole| pole.re > 1e-7 * size)
+        .count();
     let minimum = design.zeros.iter().all(|zero| zero.re <= 0.0);
     let kind = match (design.zeros.is_empty(), minimum) {
         (true, _) => "none: minimum phase".to_string(),
@@ -134,7 +155,7 @@ fn plant_lines(design: &Design) -> Vec<String> {
     };
     vec![
         format!(
-            "Poles of the plant    {} 1/s: {unstable} unstable",
+            "Poles of the plant    {} 1/s: {unstable} unstable{marginal}",
             several(&design.poles)
         ),
         format!("Zeros to driven q     {kind}"),
@@ -202,10 +223,38 @@ fn estimator_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
         "Poles of the filter   {}",
         several(&estimation.estimator.poles)
     ));
+    lines.extend(stationary_lines(design, estimation));
     lines.push(format!(
         "With filter and gains the loop's spectral radius is {:.6}",
         largest(&estimation.compensator.loop_poles)
     ));
+    lines
+}
+
+/// How far noise moves the loop, and whether that is too far.
+fn stationary_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
+    let Some(stationary) = &estimation.stationary else {
+        return vec!["Noise moves this loop without bound".to_string()];
+    };
+    let said = |signal: &Signal, rms: f64| match signal.unit {
+        "rad" => format!("{} {} deg", signal.name, short(rms.to_degrees())),
+        unit => format!("{} {} {unit}", signal.name, short(rms)),
+    };
+    let joints = design.plant.a.nrows() / 2;
+    let angles = design.states[..joints].iter().zip(&stationary.state_rms);
+    let inputs = design.inputs.iter().zip(&stationary.input_rms);
+    let all: Vec<String> = angles.chain(inputs).map(|(s, rms)| said(s, *rms)).collect();
+    let mut lines = vec![format!("Noise moves it by     {} RMS", all.join(", "))];
+    if let Some(beyond) = estimation.beyond(design) {
+        lines.push(format!(
+            "NOT linear: noise alone moves {} by {} {} RMS, beyond its range of {}; take finer \
+             sensors, or gains that ask for less",
+            beyond.signal.name,
+            short(beyond.rms),
+            beyond.signal.unit,
+            plain(beyond.range)
+        ));
+    }
     lines
 }
 
@@ -240,7 +289,12 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
         format!("{} ±{range} in steps of {step}", state.name)
     });
     let ranges: Vec<String> = ranges.collect();
-    vec![
+    let beyond = design.inputs.iter().enumerate().filter(|(i, _)| {
+        let error = loss.gain_error[*i] + loss.state_error[*i] + loss.input_error[*i];
+        error > fixed.ranges.input[*i]
+    });
+    let beyond: Vec<&str> = beyond.map(|(_, input)| input.name.as_str()).collect();
+    let mut lines = vec![
         table.to_string(),
         String::new(),
         match ranges.len() <= WIDEST {
@@ -255,5 +309,13 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
             loss.radius_fixed,
             law.fingerprint()
         ),
-    ]
+    ];
+    if !beyond.is_empty() {
+        lines.push(format!(
+            "ROUNDING CAN EXCEED THE LIMIT of {}: declare smaller ranges (--range) or steps of your \
+             own (--state-step)",
+            list(&beyond)
+        ));
+    }
+    lines
 }

@@ -71,7 +71,7 @@ pub fn design_margins(
         return Ok(None);
     };
     let channels = inputs.single.len();
-    let late = |which: &[usize]| controller.longest_delay(&design.plant, plant, *delay_s, which);
+    let late = |which: &[usize]| controller.longest_delay(design, plant, *delay_s, which);
     let all: Vec<usize> = (0..channels).collect();
     inputs.common.delay_s = late(&all)?;
     for (channel, single) in inputs.single.iter_mut().enumerate() {
@@ -245,14 +245,17 @@ impl Controller {
     /// The longest delay beyond the design's that the inputs `late` bear; none up to 20 samples.
     fn longest_delay(
         &self,
-        plant: &Continuous,
+        design: &Design,
         sampled: &Discrete,
         delay_s: f64,
         late: &[usize],
     ) -> Result<Option<f64>, DesignError> {
         let ts_s = sampled.ts_s;
         let is_stable = |more_s: f64| -> Result<bool, DesignError> {
-            let plant = late_inputs(plant, ts_s, delay_s, more_s, late)?;
+            let mut plant = late_inputs(&design.plant, ts_s, delay_s, more_s, late)?;
+            if let Some(integral) = &design.integral {
+                plant = integral.with_sums(&plant);
+            }
             Ok(largest(&poles(&self.at_inputs(&plant).closed(1.0))?) < 1.0)
         };
         let (mut step, longer, last) = DELAY_STEPS;

@@ -205,6 +205,7 @@ fn a_filter_costs_margin() {
             position_step_rad: 300f64.to_radians() / 1024.0,
             gyro_step_rad_s: 10f64.to_radians(),
             process: None,
+            recovery: 0.0,
         });
     });
     near(filtered.inputs.common.gain[0], 0.865, 5e-4);
