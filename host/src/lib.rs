@@ -15,9 +15,6 @@ pub mod plot;
 pub mod report;
 #[cfg(feature = "virtual-cm5")]
 pub mod robot_demo;
-pub mod study;
-pub mod synth;
-pub mod sysid;
 
 pub use handstand_challenge as challenge;
 pub use handstand_diagnose::{diagnose, experiment, first_model};
@@ -25,3 +22,4 @@ pub use handstand_logs as log;
 pub use handstand_model::{Error, Model, Place, Result};
 pub use handstand_model::{dynamics, effects, error, model, motion, output};
 pub use handstand_sim::{compare, fitting, sim};
+pub use handstand_control::{synth, sysid, study};

@@ -22,6 +22,7 @@ mod raw_plot;
 mod refitted;
 mod remains;
 mod signatures;
+mod study_plots;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -46,6 +47,7 @@ pub use proposal::{next_steps, proposal_text};
 pub use raw_plot::{raw_html, raw_text};
 pub use refitted::{refitted_json, refitted_text};
 pub(crate) use signatures::chart as signature_chart;
+pub use study_plots::{monte_carlo_svg, sweep_svg};
 pub use text::diagnosis_text;
 pub use tuned::tuned_text;
 pub use verification::verification_text;

@@ -13,9 +13,8 @@ use crate::cli::show::{self, or_dash, table, table_of};
 use crate::cli::{ExitStatus, Talk};
 use handstand::output::number::exact;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
-use handstand::study::{
-    Figures, Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweep_svg, sweeps,
-};
+use handstand::study::{Figures, Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweeps};
+use handstand::report::sweep_svg;
 use handstand::synth::controllers::{DESIGNS, design};
 use handstand::{Error, Result, output};
 use serde_json::json;

@@ -92,7 +92,7 @@ mod tests {
     use std::path::Path;
 
     fn designed(sensors: Sensors) -> Design {
-        let text = include_str!("../../models/handstand.toml");
+        let text = include_str!("../../../models/handstand.toml");
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let request = Request {
             sensors: Some(sensors),
@@ -181,7 +181,7 @@ mod tests {
     /// noise moves it.
     #[test]
     fn recovery_buys_margin_with_noise() {
-        let text = include_str!("../../models/handstand.toml");
+        let text = include_str!("../../../models/handstand.toml");
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let at = |recovery| {
             let design = designed(Sensors {

@@ -131,7 +131,7 @@ mod tests {
     /// The words that ship and the wide integers of the proof say the same, past inputs and all.
     #[test]
     fn words_say_what_wide_integers_say() {
-        let text = include_str!("../../../models/handstand.toml");
+        let text = include_str!("../../../../models/handstand.toml");
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let request = Request {
             time: Time::Sampled {

@@ -156,7 +156,7 @@ mod tests {
     use std::path::Path;
 
     fn designed(delay_s: f64) -> (Model, Design) {
-        let text = include_str!("../../models/handstand.toml");
+        let text = include_str!("../../../models/handstand.toml");
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let request = Request {
             integral: Some(Weight::Scalar(100.0)),

@@ -101,7 +101,7 @@ mod tests {
     /// Duties of drives of 2 and 4 N m: the torques of the same law.
     #[test]
     fn duties_become_torques() {
-        let text = include_str!("../../../models/handstand.toml");
+        let text = include_str!("../../../../models/handstand.toml");
         let mut model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         for (joint, stall_torque_nm) in [(1, 2.0), (2, 4.0)] {
             model.joints[joint].drive = Drive::Duty(crate::model::Motor {

@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// What python-control finds, by `tests/peers/margins.py`.
-const REFERENCE: &str = include_str!("../../../tests/data/margins.json");
+const REFERENCE: &str = include_str!("../../../../tests/data/margins.json");
 
 fn matrix(value: &Value) -> DMatrix<f64> {
     let rows: Vec<Vec<f64>> = serde_json::from_value(value.clone()).unwrap();
@@ -141,7 +141,7 @@ fn a_loop_that_is_not_stable_has_none() {
 }
 
 fn of_the_paper_s_robot(change: impl Fn(&mut Request)) -> DesignMargins {
-    let text = include_str!("../../../models/handstand.toml");
+    let text = include_str!("../../../../models/handstand.toml");
     let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
     let mut request = Request {
         weights: CostWeights::PAPER,

@@ -20,7 +20,7 @@ distribution = "normal"
 size = 0.05
 "#;
 
-fn study(text: &str) -> crate::Result<Study> {
+fn study(text: &str) -> crate::error::Result<Study> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("study.toml");
     std::fs::write(&file, text).unwrap();

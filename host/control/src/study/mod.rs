@@ -5,7 +5,7 @@
 //! (robots drawn around it, in figures). On top of that: `sweep` (a [`quantity`] at every level),
 //! `region` (of starts), `longest_delay`, `mass_errors` (in the linear loop), `verify` (a design,
 //! with the effects that it leaves out), and `monte_carlo` (chunks of runs) -> `journal` (on disk)
-//! -> `merge` -> `summary`. [`crate::paper`] reproduces the paper's numbers with it.
+//! -> `merge` -> `summary`.
 
 mod case;
 mod closed_loop;
@@ -23,7 +23,6 @@ mod mass_errors;
 mod merge;
 mod monte_carlo;
 mod parse;
-mod plot;
 mod quantities;
 mod quantity;
 mod region;
@@ -54,12 +53,11 @@ pub use mass_errors::{MassErrors, radii, unstable_share};
 pub use merge::{Merged, Missing, merge};
 pub use monte_carlo::{CHUNK, chunk_rows, fill};
 pub use parse::{Study, handstand};
-pub use plot::{monte_carlo_svg, sweep_svg};
 pub use quantities::QUANTITIES;
 pub use quantity::{
     Distribution, Levels, Quantity, Spread, SpreadOver, Uncertain, quantity, sweeps,
 };
-pub(crate) use region::bisect;
+pub use region::bisect;
 pub use region::{REGION_JUDGEMENTS, Region, region, tilt_border_rad};
 pub use region_map::{MappedStart, region_map};
 pub use response::{LoopResponse, response, step_response};

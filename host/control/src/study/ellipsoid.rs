@@ -139,7 +139,7 @@ mod tests {
     /// The weak direction is that of an independent computation; across it the region is wide.
     #[test]
     fn the_paper_s_robot_is_weak_in_one_direction() {
-        let text = include_str!("../../models/handstand.toml").to_string()
+        let text = include_str!("../../../models/handstand.toml").to_string()
             + "\n[[effect]]\nkind = \"torque_saturation\"\njoint = \"all\"\nlimit_nm = 2.0\n";
         let model = Model::parse(&text, Path::new("handstand.toml")).unwrap();
         let request = Request {

@@ -118,7 +118,7 @@ fn a_sensor_s_steps_are_kept_or_refused() {
     format.state_step = Some(vec![1e-6, 0.5]);
     let error = quantise(&k, &[0.0; 2], &[0.0], &ranges, &format).unwrap_err();
     assert!(error.to_string().contains("1000000 steps"), "{error}");
-    assert_eq!(crate::Error::from(error).exit_code(), 3);
+    assert_eq!(crate::error::Error::from(error).exit_code(), 3);
     format.state_step = Some(vec![0.005, 0.5]);
     format.input_step = Some(vec![1e-4]);
     let error = quantise(&(1000.0 * &k), &[0.0; 2], &[0.0], &ranges, &format).unwrap_err();

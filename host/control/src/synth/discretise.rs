@@ -201,7 +201,7 @@ mod tests {
             assert_eq!(sampled.plant_states(), 2);
         }
         for (ts_s, delay_s) in [(0.0, 0.0), (f64::NAN, 0.0), (0.01, -0.01), (0.01, 1.1)] {
-            let error = crate::Error::from(zoh(&plant, ts_s, delay_s).unwrap_err());
+            let error = crate::error::Error::from(zoh(&plant, ts_s, delay_s).unwrap_err());
             assert_eq!(error.exit_code(), 3);
         }
     }

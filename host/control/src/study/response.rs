@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn the_handstand_comes_back_from_a_lean() {
-        let text = include_str!("../../models/handstand.toml");
+        let text = include_str!("../../../models/handstand.toml");
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let request = Request::standard(&model);
         let design = Design::of(&model, &request).unwrap();
@@ -104,7 +104,7 @@ mod tests {
     /// With integral action the driven joints come back to the pose, and the bar's joint alone leans.
     #[test]
     fn integral_action_brings_the_driven_joints_back() {
-        let text = include_str!("../../models/handstand.toml");
+        let text = include_str!("../../../models/handstand.toml");
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let leans = |integral| {
             let request = Request {
@@ -128,7 +128,7 @@ mod tests {
     /// A lasting torque ends in the lean that the closed form says.
     #[test]
     fn a_lasting_torque_leans_it_as_the_closed_form_says() {
-        let text = include_str!("../../models/handstand.toml");
+        let text = include_str!("../../../models/handstand.toml");
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let request = Request {
             weights: CostWeights::PAPER,

@@ -148,7 +148,7 @@ mod tests {
     /// The figures of an independent computation for the paper's robot.
     #[test]
     fn the_paper_s_robot_is_soft_on_the_bar() {
-        let (model, design) = designed(include_str!("../../models/handstand.toml"), 100.0);
+        let (model, design) = designed(include_str!("../../../models/handstand.toml"), 100.0);
         let found = stiffness(&model, &design).unwrap();
         let degrees = |lean: &DVector<f64>| lean.map(f64::to_degrees);
         let bar = degrees(&found.lean_per_torque.column(0).into_owned()) * 0.01;
@@ -165,7 +165,7 @@ mod tests {
     /// Late inputs and absolute angles change what K looks like, not that torque is answered.
     #[test]
     fn a_lasting_torque_is_answered_by_gravity_and_gains() {
-        let text = include_str!("../../models/handstand.toml").to_string()
+        let text = include_str!("../../../models/handstand.toml").to_string()
             + "\n[[effect]]\nkind = \"delay\"\njoint = \"all\"\ndelay_s = 0.013\n";
         for angles in ["relative", "absolute"] {
             let text = text.replace("angles = \"relative\"", &format!("angles = \"{angles}\""));

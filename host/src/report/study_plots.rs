@@ -1,12 +1,9 @@
 //! Studies as SVG files.
 
-use super::merge::Merged;
-use super::quantity::{Levels, Quantity};
-use super::sweep::{Level, Sweep};
-use super::{Figures, share_interval};
 use crate::error::Result;
 use crate::output::number::given;
 use crate::plot::{Chart, Curve, Tone, svg_file};
+use crate::study::{Figures, Level, Levels, Merged, Quantity, Sweep, share_interval};
 use std::path::Path;
 
 /// Colours of a chart's curves.

@@ -224,7 +224,7 @@ fn a_gear_that_gives_is_designed_with_as_if_it_were_rigid() {
 /// pose.
 #[test]
 fn a_torque_limit_counts_by_what_the_pose_takes() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/handstand.toml");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/handstand.toml");
     let mut model = Model::load(&file).unwrap();
     let pose = balanced(&model, &[1.5, 1.9, 1.9]).unwrap();
     let inputs = linearise(&model, &pose).unwrap().inputs;
@@ -243,7 +243,7 @@ fn a_torque_limit_counts_by_what_the_pose_takes() {
 /// Coulomb in the gears.
 #[test]
 fn the_robot_behind_its_servos_has_a_linear_model() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/robot.toml");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/robot.toml");
     let model = Model::load(&file).unwrap();
     let found = linearise(&model, &upright(&model)).unwrap();
     assert!(

@@ -119,7 +119,7 @@ pub(super) fn largest(mut stabilises: impl FnMut(f64) -> Result<bool>) -> Result
 ///
 /// # Errors
 /// Those of `holds`.
-pub(crate) fn bisect(
+pub fn bisect(
     mut inside: f64,
     mut outside: f64,
     halvings: usize,

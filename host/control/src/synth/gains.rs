@@ -95,12 +95,12 @@ impl Gains {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Model;
+    use crate::model::Model;
     use crate::synth::{linearise, upright, zoh};
     use std::path::Path;
 
     fn handstand() -> Continuous {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/handstand.toml");
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/handstand.toml");
         let model = Model::load(&file).unwrap();
         linearise(&model, &upright(&model)).unwrap().plant
     }
@@ -245,7 +245,7 @@ mod tests {
     }
 
     fn refusal(result: Result<Gains, DesignError>) -> String {
-        let error = crate::Error::from(result.unwrap_err());
+        let error = crate::error::Error::from(result.unwrap_err());
         assert_eq!(error.exit_code(), 3);
         assert!(error.remedy().is_some());
         error.to_string()

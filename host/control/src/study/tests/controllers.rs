@@ -1,7 +1,7 @@
 //! What every controller is worth under every condition.
 
 use super::super::*;
-use crate::Model;
+use crate::model::Model;
 use crate::effects::named;
 use crate::model::EffectInstance;
 use crate::synth::controllers::{
@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 use std::path::Path;
 
 fn model() -> Model {
-    let text = include_str!("../../../models/handstand.toml");
+    let text = include_str!("../../../../models/handstand.toml");
     Model::parse(text, Path::new("handstand.toml")).unwrap()
 }
 
@@ -178,7 +178,7 @@ fn figures_are_the_same_on_any_number_of_threads() {
 /// A model that `add` has written: servos, viscous and Coulomb friction.
 #[test]
 fn controllers_take_the_robot_behind_its_servos() {
-    let text = include_str!("../../../models/robot.toml");
+    let text = include_str!("../../../../models/robot.toml");
     let model = Model::parse(text, Path::new("robot.toml")).unwrap();
     let nominal = DesignModel::new(&model, &upright(&model), 0.01).unwrap();
     let omitted: Vec<_> = nominal

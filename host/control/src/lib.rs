@@ -1,0 +1,9 @@
+//! Gains that balance a robot, from its model to fixed-point tables; what they are robust to; and
+//! servos identified as black boxes.
+
+pub mod study;
+pub mod synth;
+pub mod sysid;
+
+use handstand_model::{dynamics, effects, error, model, motion, output};
+use handstand_sim::{compare, fitting, sim};
