@@ -11,15 +11,15 @@ pub mod deploy;
 pub mod lab;
 pub mod link;
 pub mod paper;
-pub mod plot;
-pub mod report;
 #[cfg(feature = "virtual-cm5")]
 pub mod robot_demo;
 
 pub use handstand_challenge as challenge;
+pub use handstand_control::{study, synth, sysid};
 pub use handstand_diagnose::{diagnose, experiment, first_model};
 pub use handstand_logs as log;
 pub use handstand_model::{Error, Model, Place, Result};
 pub use handstand_model::{dynamics, effects, error, model, motion, output};
+pub use handstand_report as report;
+pub use handstand_report::plot;
 pub use handstand_sim::{compare, fitting, sim};
-pub use handstand_control::{synth, sysid, study};

@@ -2,12 +2,11 @@
 
 use super::reply::{Answer, LabError, typed};
 use crate::plot;
+use crate::report::page::STYLE as PAGE;
+use crate::report::playback::page::{SCRIPT as VIEW, STYLE as VIEW_STYLE};
 use axum::extract::Path;
 
 const FRAME: &str = include_str!("assets/lab.css");
-const PAGE: &str = include_str!("../report/page.css");
-const VIEW_STYLE: &str = include_str!("../report/playback/view.css");
-const VIEW: &str = include_str!("../report/playback/view.js");
 const CHART: &str = include_str!("assets/chart.js");
 const CURVES: &str = include_str!("assets/curves.js");
 const PAINT: &str = include_str!("assets/paint.js");

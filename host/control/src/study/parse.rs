@@ -34,7 +34,7 @@ pub struct Study {
 /// # Errors
 /// None is known: the file is the project's own.
 pub fn handstand() -> Result<Model> {
-    let text = include_str!("../../../models/handstand.toml");
+    let text = include_str!("handstand.toml");
     Model::parse(text, Path::new("handstand.toml"))
 }
 

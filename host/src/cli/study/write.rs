@@ -3,8 +3,8 @@
 use crate::cli::{Talk, show::table_of};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
-use handstand::study::{FigureQuantiles, Influence, Merged, Summary};
 use handstand::report::monte_carlo_svg;
+use handstand::study::{FigureQuantiles, Influence, Merged, Summary};
 use handstand::{Error, Result, output};
 use serde_json::json;
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! What every controller is worth under every condition.
 
 use super::super::*;
-use crate::model::Model;
 use crate::effects::named;
 use crate::model::EffectInstance;
+use crate::model::Model;
 use crate::synth::controllers::{
     DEFAULT, DESIGNS, DesignModel, MASS_ERROR, MultiModel, WEIGHT, design,
 };

@@ -8,20 +8,21 @@ use crate::plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Dark colours and layout; screen, phone and paper.
-const STYLE: &str = include_str!("page.css");
+/// The style of every page.
+pub const STYLE: &str = include_str!("page.css");
 /// Zoom of the charts, and buttons that copy commands; without it the page shows the same.
 const SCRIPT: &str = include_str!("page.js");
 
 /// A part of the page that is there only if its data are.
-pub(crate) struct Section {
+pub struct Section {
     /// Anchor.
-    pub(crate) id: &'static str,
+    pub id: &'static str,
     /// Heading.
-    pub(crate) title: &'static str,
+    pub title: &'static str,
     /// What to look for, to someone who sees such a thing for the first time.
-    pub(crate) lead: &'static str,
+    pub lead: &'static str,
     /// The rest.
-    pub(crate) body: Markup,
+    pub body: Markup,
 }
 
 /// A self-contained page: no scripts, fonts or pictures from elsewhere.
@@ -30,7 +31,7 @@ pub fn html(report: &Report) -> String {
 }
 
 /// The same with sections of the caller's above the others.
-pub(crate) fn html_with(report: &Report, above: Vec<Section>) -> String {
+pub fn html_with(report: &Report, above: Vec<Section>) -> String {
     let parts: [fn(&Report) -> Option<Section>; 10] = [
         traces::section,
         closed_loop::section,
@@ -49,7 +50,7 @@ pub(crate) fn html_with(report: &Report, above: Vec<Section>) -> String {
 }
 
 /// A document of sections, with links to them.
-pub(crate) fn document(title: &str, header: &Markup, sections: &[Section]) -> String {
+pub fn document(title: &str, header: &Markup, sections: &[Section]) -> String {
     let style = html! { (PreEscaped(plot::STYLE)) (PreEscaped(STYLE)) };
     let body = html! {
         main {
@@ -89,6 +90,6 @@ pub(crate) fn self_contained(title: &str, style: &Markup, body: &Markup) -> Stri
 }
 
 /// A table under these headings (`th` elements); it scrolls sideways where it is too wide.
-pub(crate) fn table(headings: &Markup, rows: &Markup) -> Markup {
+pub fn table(headings: &Markup, rows: &Markup) -> Markup {
     html! { div.scroll tabindex="0" { table { thead { tr { (headings) } } tbody { (rows) } } } }
 }

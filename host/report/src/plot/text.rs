@@ -16,7 +16,7 @@ const BITS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 type BrailleGrid = [[u8; COLUMNS]; ROWS];
 
 /// Curves between two axes with their end values; grey curves show every fifth dot.
-pub(super) fn chart(chart: &Chart) -> String {
+pub fn chart(chart: &Chart) -> String {
     let [x, y] = chart.spans(0.05);
     let across = Scale::new(x, (0.0, (2 * COLUMNS - 1) as f64));
     let down = Scale::new(y, ((4 * ROWS - 1) as f64, 0.0));

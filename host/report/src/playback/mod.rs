@@ -1,8 +1,8 @@
 //! A motion as a page that plays it: one file, nothing loaded from elsewhere.
 
-mod page;
+pub mod page;
 mod scene;
 
 pub use page::html;
-pub(crate) use page::stage;
+pub use page::stage;
 pub use scene::{DrawnLink, DrawnMotion, Input, Scene, Track, TrackKind};

@@ -13,9 +13,10 @@ mod json;
 mod log_check;
 mod margins;
 mod outcomes;
-pub(crate) mod page;
+pub mod page;
 mod parameters;
 pub mod playback;
+pub mod plot;
 mod proposal;
 mod provenance;
 mod raw_plot;
@@ -42,15 +43,22 @@ pub use margins::{
 };
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
-pub(crate) use page::html_with;
+pub use page::html_with;
 pub use proposal::{next_steps, proposal_text};
 pub use raw_plot::{raw_html, raw_text};
 pub use refitted::{refitted_json, refitted_text};
-pub(crate) use signatures::chart as signature_chart;
+pub use signatures::chart as signature_chart;
 pub use study_plots::{monte_carlo_svg, sweep_svg};
 pub use text::diagnosis_text;
 pub use tuned::tuned_text;
 pub use verification::verification_text;
+
+use handstand_control::{study, synth};
+use handstand_diagnose::{diagnose, experiment};
+use handstand_logs as log;
+use handstand_model::{effects, error, model, motion, output};
+
+use handstand_sim::{compare, fitting};
 
 use crate::compare::{Comparison, SignalError};
 use crate::diagnose::Diagnosis;

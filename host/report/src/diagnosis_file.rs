@@ -154,8 +154,8 @@ fn values_of(candidates: &[Candidate], found: &Value) -> Option<Vec<(ParameterPa
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::diagnosis_json;
-    use crate::report::tests::sample::diagnosis;
+    use crate::diagnosis_json;
+    use crate::tests::sample::diagnosis;
 
     #[test]
     fn what_diagnose_writes_is_read_back() {

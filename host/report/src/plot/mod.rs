@@ -29,11 +29,11 @@ mod text;
 
 pub(crate) use axes::Axes;
 pub use axes::Tone;
-pub(crate) use bars::{Bar, interval, largest};
+pub use bars::{Bar, interval, largest};
 pub use chart::{Chart, Curve};
 pub use file::svg_file;
 pub use heat_map::heat_map;
 pub(crate) use scale::{Scale, span};
 
 /// Light palette and the look of the marks; pages add their dark palette.
-pub(crate) const STYLE: &str = include_str!("plot.css");
+pub const STYLE: &str = include_str!("plot.css");

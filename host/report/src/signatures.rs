@@ -85,7 +85,7 @@ pub(super) fn title(id: &'static str) -> &'static str {
 }
 
 /// The curve without the effect, and with the values it is drawn for.
-pub(crate) fn chart(effect: &dyn Effect, signature: &Signature) -> Chart {
+pub fn chart(effect: &dyn Effect, signature: &Signature) -> Chart {
     let parameters = effect.info().parameters.iter().zip(&signature.values);
     let values =
         parameters.map(|(parameter, value)| format!("{} = {}", parameter.key, given(*value)));

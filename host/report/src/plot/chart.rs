@@ -95,7 +95,7 @@ impl Chart {
     }
 
     /// An SVG element `width` px by `height` px for a page with the style sheet of this module.
-    pub(crate) fn svg(&self, width: f64, height: f64) -> Markup {
+    pub fn svg(&self, width: f64, height: f64) -> Markup {
         html! {
             svg viewBox=(format!("0 0 {width} {height}")) role="img" aria-label=(self.title) {
                 (self.drawn((0.0, 0.0), (width, height)))
@@ -104,7 +104,7 @@ impl Chart {
     }
 
     /// As [`Chart::svg`], for a page whose script zooms along x.
-    pub(crate) fn zoomable_svg(&self, width: f64, height: f64) -> Markup {
+    pub fn zoomable_svg(&self, width: f64, height: f64) -> Markup {
         let axes = self.axes((0.0, 0.0), (width, height));
         let curves = html! { @for curve in &self.curves { (self.mark(curve, &axes)) } };
         html! {
@@ -118,7 +118,7 @@ impl Chart {
     }
 
     /// The curves' names with their colours.
-    pub(crate) fn legend(&self) -> Markup {
+    pub fn legend(&self) -> Markup {
         html! {
             @for curve in &self.curves {
                 span class={ "key " (curve.tone.class()) } { span.swatch {} (curve.name) }

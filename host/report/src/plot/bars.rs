@@ -7,21 +7,22 @@ use maud::{Markup, html};
 /// A bar from 0 to `value` on a scale that ends at `full`, with a pale bar up to `ghost` and a thin
 /// line at `mark`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bar {
+pub struct Bar {
     /// What it shows.
-    pub(crate) value: f64,
+    pub value: f64,
     /// Value at the right end.
-    pub(crate) full: f64,
+    pub full: f64,
     /// Whose it is.
-    pub(crate) tone: Tone,
+    pub tone: Tone,
     /// Where it came from.
-    pub(crate) ghost: Option<f64>,
+    pub ghost: Option<f64>,
     /// A thin line to compare with.
-    pub(crate) mark: Option<f64>,
+    pub mark: Option<f64>,
 }
 
 impl Bar {
-    pub(crate) fn new(value: f64, full: f64, tone: Tone) -> Self {
+    /// A bar of `value` in a row whose full length is `full`.
+    pub fn new(value: f64, full: f64, tone: Tone) -> Self {
         Self {
             value,
             full,
@@ -31,7 +32,8 @@ impl Bar {
         }
     }
 
-    pub(crate) fn draw(&self) -> Markup {
+    /// As markup.
+    pub fn draw(&self) -> Markup {
         let share = |value: f64| {
             let share = 1e3 * value / self.full;
             at(Some(share)
@@ -57,7 +59,7 @@ impl Bar {
 }
 
 /// Largest drawable value, for the right end of a set of bars.
-pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values
         .into_iter()
         .filter(|value| drawable(*value))
@@ -66,7 +68,7 @@ pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// An interval with its value; `off` is the value at which the effect vanishes, marked if there is
 /// one.
-pub(crate) fn interval(value: f64, low: f64, high: f64, off: Option<f64>) -> Markup {
+pub fn interval(value: f64, low: f64, high: f64, off: Option<f64>) -> Markup {
     if ![value, low, high].into_iter().all(drawable) || low > high {
         return html! {};
     }

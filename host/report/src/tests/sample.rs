@@ -10,9 +10,9 @@ use crate::diagnose::{
 };
 use crate::fitting::{ErrorReduction, FittedValue};
 use crate::model::MeasuredSignal;
-use crate::report::{HashedModel, LogFile, Report, ReportProvenance};
+use crate::{HashedModel, LogFile, Report, ReportProvenance};
 
-pub(in crate::report) fn report() -> Report {
+pub(crate) fn report() -> Report {
     let log = |name: &str, held_out| LogFile {
         name: name.into(),
         motions: vec![name.trim_end_matches(".csv").into()],
@@ -41,7 +41,7 @@ pub(in crate::report) fn report() -> Report {
     }
 }
 
-pub(in crate::report) fn comparison(model: &str, error_mrad: f64) -> Comparison {
+pub(crate) fn comparison(model: &str, error_mrad: f64) -> Comparison {
     Comparison {
         model: model.into(),
         horizon_s: None,
@@ -62,7 +62,7 @@ pub(in crate::report) fn comparison(model: &str, error_mrad: f64) -> Comparison 
 }
 
 /// A loop of a model that falls.
-pub(in crate::report) fn closed_loop(error_mrad: f64) -> ClosedLoopComparison {
+pub(crate) fn closed_loop(error_mrad: f64) -> ClosedLoopComparison {
     let signals = vec![LoopSignal {
         joint: 1,
         rms_error_rad: 1e-3 * error_mrad,
@@ -185,7 +185,7 @@ fn effect(kind: &str, title: &str, parameters: Vec<FittedValue>) -> FittedEffect
     }
 }
 
-pub(in crate::report) fn diagnosis() -> Diagnosis {
+pub(crate) fn diagnosis() -> Diagnosis {
     let coulomb = fitted("coulomb@1.torque_nm", "N m", [0.0821, 0.0794, 0.0851]);
     let mut dead_zone = fitted("dead_zone@1.width", "1", [0.031, 0.02, 0.05]);
     dead_zone.on_bound = true;

@@ -1,12 +1,14 @@
 //! The page around the scene.
 
 use super::scene::Scene;
+use crate::page::self_contained;
 use crate::plot;
-use crate::report::page::self_contained;
 use maud::{Markup, PreEscaped, html as markup};
 
-const STYLE: &str = include_str!("view.css");
-const SCRIPT: &str = include_str!("view.js");
+/// The style of the view.
+pub const STYLE: &str = include_str!("view.css");
+/// The script that moves the view.
+pub const SCRIPT: &str = include_str!("view.js");
 /// Keys and what they do.
 const KEYS: [(&[&str], &str); 8] = [
     (&["Space"], "play, pause"),
@@ -38,7 +40,7 @@ pub fn html(scene: &Scene, command: &str) -> serde_json::Result<String> {
 ///
 /// # Errors
 /// As [`html`].
-pub(crate) fn stage(scene: &Scene) -> serde_json::Result<Markup> {
+pub fn stage(scene: &Scene) -> serde_json::Result<Markup> {
     // What could end the script element is written otherwise.
     let data = serde_json::to_string(scene)?.replace('<', "\\u003c");
     Ok(markup! {
