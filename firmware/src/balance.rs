@@ -1,7 +1,7 @@
 //! Balancing on board: one tick of reading, law and command.
 
 use crate::design::{POSE_ANGLE, POSE_RATE};
-use crate::servos::{Servo, Servos};
+use crate::servos::{Driven, Servo, Servos};
 use handstand_shared::crc::extend32;
 use handstand_shared::fixed::saturate;
 use handstand_shared::law::control;
@@ -159,18 +159,16 @@ impl Balance {
         self.fingerprint.map(|_| [shoulder.id, hip.id])
     }
 
-    /// All servos it commands; 255 where a joint has one only.
-    pub fn servos(&self) -> [u8; 4] {
+    /// All servos it commands.
+    pub fn servos(&self) -> Driven {
         let [shoulder, hip] = &self.plan.joints;
-        [shoulder.id, shoulder.mirror, hip.id, hip.mirror]
+        Driven([shoulder, hip].map(Joint::servos))
     }
 
     /// Whether all servos it commands turn without end: others would take its commands for speeds
     /// on the way to their goals.
     pub fn are_wheels(&self, servos: &Servos) -> bool {
-        let is_wheel = |id: u8| id >= 254 || servos.is_wheel(id);
-        let are_wheels = |joint: &Joint| is_wheel(joint.id) && is_wheel(joint.mirror);
-        self.plan.joints.iter().all(are_wheels)
+        self.servos().ids().all(|id| servos.is_wheel(id))
     }
 
     /// Whether all links are near the operating point, and the first one turns slowly.
@@ -265,11 +263,8 @@ impl Balance {
 
     /// Whether all servos it commands answered.
     pub fn has_servos(&self, servos: &Servos) -> bool {
-        let there = |id: u8| id >= 254 || servos.with_id(id).is_some_and(Servo::is_present);
-        self.plan
-            .joints
-            .iter()
-            .all(|joint| there(joint.id) && there(joint.mirror))
+        let is_there = |id: u8| servos.with_id(id).is_some_and(Servo::is_present);
+        self.servos().ids().all(is_there)
     }
 
     /// The operating point with compensation: the first link's angle, and both joints' in codes.

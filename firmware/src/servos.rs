@@ -10,6 +10,7 @@ mod mode;
 mod registers;
 mod round;
 
+pub use commands::Limit;
 use mode::ServoMode;
 use registers::Registers;
 
@@ -110,6 +111,23 @@ impl Servo {
     }
 }
 
+/// The servos that balancing commands: of each joint the one that measures and drives, and the one
+/// that drives along, if one does.
+#[derive(Debug, Clone, Copy)]
+pub struct Driven(pub [[Option<u8>; 2]; 2]);
+
+impl Driven {
+    /// Their ids.
+    pub fn ids(self) -> impl Iterator<Item = u8> {
+        self.0.into_iter().flatten().flatten()
+    }
+
+    /// Whether this servo is one of them.
+    pub fn has(self, id: u8) -> bool {
+        self.0.as_flattened().contains(&Some(id))
+    }
+}
+
 /// All of them, in the servo list's order.
 #[derive(Debug, Clone)]
 pub struct Servos {
@@ -188,27 +206,16 @@ impl Servos {
     /// Reads these two last, the second of them after the first; the others in the list's order.
     #[inline(never)]
     pub fn read_last(&mut self, ids: [u8; 2]) {
-        let count = self.count;
-        let mut order = [0; SERVOS];
-        let mut slots = order.iter_mut();
-        let [first, second] = ids;
-        for turn in 0..3 {
-            for (place, servo) in (0..count).zip(&self.servos) {
-                let own = if servo.id == first {
-                    1
-                } else if servo.id == second {
-                    2
-                } else {
-                    0
-                };
-                if own == turn
-                    && let Some(slot) = slots.next()
-                {
-                    *slot = place;
-                }
-            }
-        }
-        self.order = order;
+        let last = ids.map(|id| self.place_of(id));
+        let others = (0..self.count).filter(|place| !last.contains(&Some(*place)));
+        let all = others.chain(last.into_iter().flatten());
+        (self.order.iter_mut().zip(all)).for_each(|(slot, place)| *slot = place);
+    }
+
+    fn place_of(&self, id: u8) -> Option<u8> {
+        let mut places = (0..).zip(self.all());
+        let own = places.find(|(_, servo)| servo.id == id);
+        own.map(|(place, _)| place)
     }
 
     /// Place of the servo that is read at this turn; beyond the last one, a place that is none.

@@ -29,14 +29,8 @@ impl App {
     /// arms.
     fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
         match self.state {
-            State::Stream(Torque::On | Torque::Fading { .. }) => {
-                self.disarm(board);
-                self.state = State::Stream(Torque::Off);
-            }
-            State::Balance(Torque::On | Torque::Fading { .. }) => {
-                self.disarm(board);
-                self.state = State::Balance(Torque::Off);
-            }
+            State::Stream(Torque::On(_) | Torque::Fading(_))
+            | State::Balance(Torque::On(_) | Torque::Fading(_)) => self.disarm(board),
             State::Bridge | State::Stream(Torque::Off) if pressed & button::START != 0 => {
                 self.enter(board, Mode::Balance);
             }

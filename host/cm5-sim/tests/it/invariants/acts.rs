@@ -235,7 +235,7 @@ impl Judged {
 
     /// As an adapter it passes them on: any could be a packet that switches torque on.
     fn garbage(&mut self, bytes: &[u8]) {
-        if self.cm5.app.state() == State::Bridge {
+        if let State::Bridge = self.cm5.app.state() {
             return;
         }
         self.cm5.send_bytes(bytes);

@@ -49,7 +49,7 @@ impl Judged {
         self.goals = self.goals_now();
         let servos = self.cm5.board.bus.servos.iter();
         self.had_torque = servos.map(|servo| servo.torque_is_on()).collect();
-        self.was_streaming = self.cm5.app.state() == State::Stream(Torque::On);
+        self.was_streaming = matches!(self.cm5.app.state(), State::Stream(Torque::On(_)));
         self.looked_ms = now_ms;
         let unfed_ms = self.cm5.board.longest_unfed_ns as f64 * 1e-6;
         assert!(
@@ -123,7 +123,7 @@ impl Judged {
         );
         let is_on = matches!(
             state,
-            State::Stream(Torque::On) | State::Balance(Torque::On)
+            State::Stream(Torque::On(_)) | State::Balance(Torque::On(_))
         );
         // Until it is noticed: a period, at most two ticks long; and one step of this test.
         let silent_ms = now_ms - self.life_ms;
@@ -135,7 +135,7 @@ impl Judged {
             silent_ms <= 300.0 + 20.0,
             "torque is on {silent_ms} ms after the last life"
         );
-        if state == State::Balance(Torque::On) {
+        if let State::Balance(Torque::On(_)) = state {
             let age_ms = now_ms - self.attitude_ms;
             assert!(
                 age_ms <= 30.0 + 30.0,
@@ -161,7 +161,7 @@ impl Judged {
         for (at, (servo, before)) in servos.enumerate() {
             let id = servo.id();
             // Arming itself sets them to where the servos stand.
-            if self.was_streaming && state == State::Stream(Torque::On) {
+            if self.was_streaming && matches!(state, State::Stream(Torque::On(_))) {
                 let step = servo.get(GOAL_POSITION).abs_diff(*before);
                 // One that was silent goes on from where it stands.
                 let is_odd = self.is_disturbed(at) || self.odd.contains(&id);
