@@ -49,8 +49,8 @@ pub struct App {
     times: TickTimes,
     /// Since the host's last goals, attitude or keep-alive: nothing else is a sign of life.
     life: Age,
-    /// The longest of it since arming, ms.
-    longest_silence_ms: u16,
+    /// The longest of it since arming, us.
+    longest_silence_us: u32,
     /// Since nothing from the PC was left to be taken: what is taken now arrived later.
     emptied: Age,
     /// Since torque was switched off; old where somebody else may have switched it on.
@@ -93,7 +93,7 @@ impl App {
             ticks: 0,
             times: TickTimes::default(),
             life: Age::NEVER,
-            longest_silence_ms: 0,
+            longest_silence_us: 0,
             emptied: Age::from(board.clock()),
             off: Age::from(board.clock()),
             arming: None,
@@ -249,8 +249,7 @@ impl App {
         }
         self.state.pass(clock);
         if self.is_armed() {
-            let silence_ms = u16::try_from(self.life.us() / 1000).unwrap_or(u16::MAX);
-            self.longest_silence_ms = self.longest_silence_ms.max(silence_ms);
+            self.longest_silence_us = self.longest_silence_us.max(self.life.us());
         }
     }
 

@@ -30,7 +30,7 @@ pub const ANSWER_US: u16 = 800;
 pub const BETWEEN_WRITES_US: u16 = 200;
 
 /// Ticks in which the limits that arming names are written, in turn, and read back: 18 servos are
-/// read in nine. Beyond, a servo that could not be read is left out, and one that does not hold
+/// read in nine and more. Beyond, a servo that could not be read is left out, and one that does not hold
 /// them refused.
 pub const ARMING_TICKS: u8 = 30;
 

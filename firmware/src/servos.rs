@@ -47,8 +47,6 @@ pub struct Servo {
     pub armed: bool,
     /// Whether its registers were read, and are as they were written.
     registers: Registers,
-    /// Whether they are read in this tick.
-    is_read_whole: bool,
     /// The goal it was last sent.
     pub goal: Position,
 }
@@ -65,7 +63,6 @@ impl Servo {
             unanswered: u8::MAX,
             armed: false,
             registers: Registers::Unread,
-            is_read_whole: false,
             goal: Position::CENTRE,
         }
     }
@@ -142,6 +139,9 @@ pub struct Servos {
     /// Place of the first servo whose housekeeping are read in this tick.
     pub housekeeping_from: u8,
     housekeeping_second: u8,
+    /// Places of those whose registers are read in this tick: one in turn, and one that must be.
+    whole_in_turn: u8,
+    whole_unread: Option<u8>,
     /// The housekeeping read in this tick.
     pub housekeeping: [Housekeeping; 2],
     /// The lowest supply in the round of housekeeping before this one.
@@ -169,6 +169,8 @@ impl Servos {
             asked: 0,
             housekeeping_from: 0,
             housekeeping_second: 0,
+            whole_in_turn: 0,
+            whole_unread: None,
             housekeeping: [round::SILENT; 2],
             supply: None,
             lowest: PART_OF_A_ROUND,
@@ -194,6 +196,8 @@ impl Servos {
         self.asked = 0;
         self.housekeeping_from = 0;
         self.housekeeping_second = u8::from(self.count > 1);
+        self.whole_in_turn = 0;
+        self.whole_unread = None;
         self.housekeeping = [round::SILENT; 2];
         self.supply = None;
         self.lowest = Supply(u8::MAX);
@@ -279,13 +283,16 @@ impl Servos {
         !self.all().iter().any(Servo::owes_mode)
     }
 
-    /// Those that did not answer in this tick: a bit each.
-    pub fn missing(&self) -> u32 {
-        // A bit that moves on: shifting by a variable costs the AVR a loop.
-        let (mut missing, mut bit) = (0u32, 1u32);
-        for servo in self.all() {
-            missing |= if servo.is_present() { 0 } else { bit };
-            bit <<= 1;
+    /// Those that did not answer in this tick: a bit each, the lowest first.
+    pub fn missing(&self) -> [u8; 3] {
+        let mut missing = [0; 3];
+        for (bits, eight) in missing.iter_mut().zip(self.all().chunks(8)) {
+            // A bit that moves on: shifting by a variable costs the AVR a loop.
+            let mut bit = 1u8;
+            for servo in eight {
+                *bits |= if servo.is_present() { 0 } else { bit };
+                bit = bit.wrapping_shl(1);
+            }
         }
         missing
     }

@@ -116,7 +116,7 @@ impl App {
 
     fn switch_on<B: Board>(&mut self, board: &mut B, by: u8) {
         self.life = Age::from(board.clock());
-        self.longest_silence_ms = 0;
+        self.longest_silence_us = 0;
         self.off = Age::NEVER;
         let onset = if let State::Balance(_) = self.state {
             // Torque comes on with the law's first command.

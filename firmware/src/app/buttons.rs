@@ -4,6 +4,7 @@ use super::{App, State, Torque};
 use crate::board::Board;
 use crate::design::SILENT_US;
 use crate::panel::{button, leds};
+use crate::servos::Servo;
 use handstand_shared::message::Mode;
 
 impl App {
@@ -14,7 +15,7 @@ impl App {
         if pressed != 0 {
             self.press(board, pressed);
         }
-        let all_answer = self.servos.missing() == 0;
+        let all_answer = self.servos.all().iter().all(Servo::is_present);
         let lit = leds(
             self.condition(),
             self.ticks,

@@ -208,7 +208,7 @@ impl App {
             gyro_zero: self.balance.gyro().zero,
             gyro_scale: self.balance.gyro().scale,
             tripped: self.servos.tripped,
-            longest_silence_ms: self.longest_silence_ms,
+            longest_silence_ms: u16::try_from(self.longest_silence_us / 1000).unwrap_or(u16::MAX),
         };
         if self.link.send(board, &Report::Telemetry(telemetry)) {
             self.times.forget_longest();

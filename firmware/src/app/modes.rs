@@ -119,18 +119,17 @@ impl App {
 
     #[inline(never)]
     fn report<B: Board>(&mut self, board: &mut B) {
-        let [m0, m1, m2, _] = self.servos.missing().to_le_bytes();
-        let report = StreamReport {
+        let report = Report::Stream(StreamReport {
             tick: self.ticks as u16,
             condition: self.condition(),
             obeyed: self.state.obeyed(),
             positions: self.servos.positions,
-            missing: [m0, m1, m2],
+            missing: self.servos.missing(),
             housekeeping_from: self.servos.housekeeping_from,
             housekeeping: self.servos.housekeeping,
             gyro: self.gyro,
-        };
-        self.link.send(board, &Report::Stream(report));
+        });
+        self.link.send(board, &report);
     }
 
     /// What the tick took since it was due, and what it lost.

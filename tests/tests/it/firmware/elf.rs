@@ -95,6 +95,7 @@ fn the_elf_stands_from_the_farthest_corners() {
         );
         let telemetry = run.telemetry.expect("it was asked for");
         let longest_us = telemetry.longest_tick_us;
+        eprintln!("{start_rad:?}: longest tick {longest_us} us");
         assert!(
             longest_us <= LONGEST_TICK_US,
             "{start_rad:?}: {longest_us} us"
