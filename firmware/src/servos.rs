@@ -3,6 +3,7 @@
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::message::{ArmLimits, Cause, Housekeeping, ServoList, TrippedServo};
 use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::plan::Joint;
 use handstand_shared::raw::{Position, ReturnDelay, Supply};
 
 mod commands;
@@ -111,17 +112,29 @@ impl Servo {
 /// The servos that balancing commands: of each joint the one that measures and drives, and the one
 /// that drives along, if one does.
 #[derive(Debug, Clone, Copy)]
-pub struct Driven(pub [[Option<u8>; 2]; 2]);
+pub struct Driven {
+    ids: [u8; 4],
+    count: u8,
+}
 
 impl Driven {
-    /// Their ids.
-    pub fn ids(self) -> impl Iterator<Item = u8> {
-        self.0.into_iter().flatten().flatten()
+    /// Those of these joints.
+    pub fn of(joints: &[Joint; 2]) -> Self {
+        let mut driven = Driven {
+            ids: [0; 4],
+            count: 0,
+        };
+        let ids = joints.iter().flat_map(Joint::servos).flatten();
+        for (slot, id) in driven.ids.iter_mut().zip(ids) {
+            *slot = id;
+            driven.count += 1;
+        }
+        driven
     }
 
-    /// Whether this servo is one of them.
-    pub fn has(self, id: u8) -> bool {
-        self.0.as_flattened().contains(&Some(id))
+    /// Their ids.
+    pub fn ids(&self) -> &[u8] {
+        self.ids.get(..usize::from(self.count)).unwrap_or(&[])
     }
 }
 
@@ -140,7 +153,7 @@ pub struct Servos {
     pub housekeeping_from: u8,
     housekeeping_second: u8,
     /// Places of those whose registers are read in this tick: one in turn, and one that must be.
-    whole_in_turn: u8,
+    whole_in_turn: Option<u8>,
     whole_unread: Option<u8>,
     /// The housekeeping read in this tick.
     pub housekeeping: [Housekeeping; 2],
@@ -169,7 +182,7 @@ impl Servos {
             asked: 0,
             housekeeping_from: 0,
             housekeeping_second: 0,
-            whole_in_turn: 0,
+            whole_in_turn: None,
             whole_unread: None,
             housekeeping: [round::SILENT; 2],
             supply: None,
@@ -196,7 +209,7 @@ impl Servos {
         self.asked = 0;
         self.housekeeping_from = 0;
         self.housekeeping_second = u8::from(self.count > 1);
-        self.whole_in_turn = 0;
+        self.whole_in_turn = None;
         self.whole_unread = None;
         self.housekeeping = [round::SILENT; 2];
         self.supply = None;

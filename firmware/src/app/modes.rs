@@ -62,15 +62,19 @@ impl App {
             return self.watch(board, started);
         }
         self.read(board, started);
+        let mut commanded = board.clock();
         match self.servos.gave_up() {
             None if self.has_attitude(board) && self.balance.has_gyro(self.gyro) => {
                 self.command(board);
+                commanded = board.clock();
             }
             None => self.soften(board, Cause::AttitudeLost),
             // It leaves the other ones to throw the robot: not one command more.
             Some(cause) => self.soften(board, cause),
         }
+        // While commands go out.
         self.report(board);
+        self.come_on(board, commanded);
     }
 
     /// The law's commands at these readings.
@@ -97,6 +101,20 @@ impl App {
         let law_us = since_us(board, law_started);
         self.times.longest_law_us = self.times.longest_law_us.max(law_us);
         self.servos.turn(board, commands);
+        self.balance.begin_update();
+    }
+
+    /// Torque comes on by another step, behind the commands handed over at this reading of the
+    /// clock.
+    #[inline(never)]
+    fn come_on<B: Board>(&mut self, board: &mut B, commanded: u16) {
+        let Some(armed) = self.state.armed_mut() else {
+            return;
+        };
+        if armed.onset == Onset::Done {
+            return;
+        }
+        bus::pause_since(board, commanded);
         let balancing = self.balance.servos();
         match armed.onset {
             // With the first command, not before: without one the robot would fall.
@@ -114,7 +132,6 @@ impl App {
             }
             Onset::Torque | Onset::Done => {}
         }
-        self.balance.begin_update();
     }
 
     #[inline(never)]

@@ -39,8 +39,8 @@ impl Whom {
     fn has(&self, id: u8) -> bool {
         match self {
             Whom::All => true,
-            Whom::Only(driven) => driven.has(id),
-            Whom::AllBut(driven) => !driven.has(id),
+            Whom::Only(driven) => driven.ids().contains(&id),
+            Whom::AllBut(driven) => !driven.ids().contains(&id),
         }
     }
 }
@@ -138,9 +138,8 @@ impl Servos {
         next
     }
 
-    /// Torque on in those of these servos that are commanded, right behind their first command.
+    /// Torque on in those of these servos that are commanded.
     pub fn switch_on_these<B: Board>(&self, board: &mut B, driven: Driven) {
-        bus::pause(board);
         self.write_to(board, Sent::TorqueOn, ALL, Whom::Only(driven));
     }
 
@@ -180,16 +179,20 @@ impl Servos {
         let is_goal = sent == Sent::Goal;
         let all = self.all().iter().skip(part.from.into());
         let all = all.take(part.places.into());
-        let is_meant = |servo: &&Servo| servo.takes_goals() && whom.has(servo.id);
         let value = |servo: &Servo| if is_goal { servo.goal.0 } else { 1 };
-        let count = all.clone().filter(is_meant).count() as u8;
-        let values = all.filter(is_meant).map(|servo| (servo.id, value(servo)));
+        // Their number goes out first; looking for them takes longer than keeping them.
+        let mut meant: Vec<(u8, u16), SERVOS, u8> = Vec::new();
+        for servo in all.filter(|servo| servo.takes_goals() && whom.has(servo.id)) {
+            // There is room for every servo.
+            let _ = meant.push((servo.id, value(servo)));
+        }
         let register = if is_goal {
             GOAL_POSITION
         } else {
             TORQUE_ENABLE
         };
-        bus::write_each(board, register, count, values);
+        let count = meant.len() as u8;
+        bus::write_each(board, register, count, meant.iter().copied());
     }
 
     /// Torque off everywhere.
@@ -244,19 +247,16 @@ impl Servos {
     }
 
     /// Sends commands to servos in wheel mode, each given with its id.
-    pub fn turn<B: Board>(&self, board: &mut B, commands: impl Iterator<Item = (u8, Signed)>) {
-        let armed = |id: u8| self.with_id(id).is_some_and(|servo| servo.armed);
-        let mut known: Vec<(u8, u16), SERVOS, u8> = Vec::new();
-        for (id, code) in commands.filter(|(id, _)| armed(*id)).take(SERVOS) {
-            // There is room for as many as are taken.
-            let _ = known.push((id, code.0));
+    pub fn turn<B: Board>(&self, board: &mut B, mut commands: [Option<(u8, Signed)>; 4]) {
+        let mut count = 0;
+        for slot in &mut commands {
+            let is_armed = |id: u8| self.with_id(id).is_some_and(|servo| servo.armed);
+            *slot = slot.filter(|(id, _)| is_armed(*id));
+            count += u8::from(slot.is_some());
         }
-        bus::write_each(
-            board,
-            MOVING_SPEED,
-            known.len() as u8,
-            known.iter().copied(),
-        );
+        let commands = commands.iter().flatten();
+        let codes = commands.map(|(id, code)| (*id, code.0));
+        bus::write_each(board, MOVING_SPEED, count, codes);
     }
 
     /// How many are commanded.

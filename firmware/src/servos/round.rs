@@ -135,12 +135,13 @@ impl Servos {
     /// Whether its registers are read in this tick, torque and goal among them. Not if it was not
     /// heard in the last one: long answers of two servos of one id spoil their neighbour's.
     fn is_read_whole(&self, place: u8) -> bool {
-        let is_chosen = place == self.whole_in_turn || self.whole_unread == Some(place);
+        let is_chosen = [self.whole_in_turn, self.whole_unread].contains(&Some(place));
         is_chosen && self.is_present(place)
     }
 
-    /// Chooses whose registers are read in this tick: each in turn, over two rounds, and one of
-    /// those that must be read, the first from that one on.
+    /// Chooses whose registers are read in this tick: one of those that must be read, the first from
+    /// the housekeeping's on; and each in turn, over two rounds, while there are such, or torque is
+    /// on.
     #[inline(never)]
     fn choose_whole(&mut self) {
         let from = self.housekeeping_from;
@@ -154,13 +155,18 @@ impl Servos {
             servo.registers != Registers::AsWritten && servo.armed && servo.is_present()
         };
         let places = (0..).zip(self.all());
-        let unread = places.filter(|(place, servo)| is_unread(servo) && *place != in_turn);
-        let mut unread = unread.map(|(place, _)| place);
-        let first = unread.next();
-        let is_behind = first.is_some_and(|place| place < from);
-        let next = unread.find(|place| is_behind && *place >= from);
-        self.whole_in_turn = in_turn;
+        let unread = places.filter(|(_, servo)| is_unread(servo));
+        let mut is_due = self.has_torque;
+        let (mut first, mut next) = (None, None);
+        for (place, _) in unread {
+            is_due = true;
+            let slot = if place < from { &mut first } else { &mut next };
+            if place != in_turn && slot.is_none() {
+                *slot = Some(place);
+            }
+        }
         self.whole_unread = next.or(first);
+        self.whole_in_turn = is_due.then_some(in_turn);
     }
 
     fn bytes_of(&self, place: u8) -> u8 {

@@ -147,9 +147,10 @@ impl Joint {
     }
 
     /// Both servos' commands, each with its id.
-    pub fn commands(&self, command: i16) -> impl Iterator<Item = (u8, Signed)> + use<> {
-        let pair = self.servos().into_iter().zip([command, -command]);
-        pair.filter_map(|(id, command)| Some((id?, Signed::new(command))))
+    pub fn commands(&self, command: i16) -> [Option<(u8, Signed)>; 2] {
+        let [own, mirrored] = self.servos();
+        let of = |id: Option<u8>, command| id.map(|id| (id, Signed::new(command)));
+        [of(own, command), of(mirrored, -command)]
     }
 
     /// Whether the servo has a code for this angle that is not the last of its range: in wheel mode
