@@ -63,8 +63,9 @@ pub struct Observer {
 ///
 /// Of a prediction: the departures, then a row per reading.
 const PREDICT: u8 = 0;
+const PREDICT_ROW: u8 = PREDICT + 1;
 /// The readings are predicted; nothing is left.
-const PREDICTED: u8 = PREDICT + 1 + READINGS as u8;
+const PREDICTED: u8 = PREDICT_ROW + READINGS as u8;
 /// Of an update: the departures, then a row per estimated state.
 const UPDATE: u8 = PREDICTED + 1;
 /// The last row of an update; a prediction follows.
@@ -217,7 +218,7 @@ impl Observer {
                 }
             }
             UPDATE => memory.departure = departure(&self.update.x0, &memory.all),
-            ..PREDICTED => self.predict_row(memory, step),
+            PREDICT_ROW..PREDICTED => self.predict_row(memory, step),
             _ => self.update_row(memory, step),
         }
         memory.step = step + 1;
@@ -229,7 +230,7 @@ impl Observer {
     }
 
     fn predict_row(&self, memory: &mut Memory, step: u8) {
-        let at = usize::from(step - PREDICT - 1);
+        let at = usize::from(step - PREDICT_ROW);
         if let (Some(row), Some(out), Some(state)) = (
             self.predict.rows.get(at),
             memory.predicted.get_mut(at),
