@@ -167,7 +167,7 @@ impl Board for Cm5 {
         self.reset_cause
     }
 
-    fn stack(&self) -> (u16, u16) {
+    fn stack(&mut self) -> (u16, u16) {
         stack::used_and_size()
     }
 }
