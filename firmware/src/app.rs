@@ -160,6 +160,9 @@ impl App {
         if matches!(self.state, State::Bridge) {
             for _ in 0..64 {
                 match board.bus_receive(0) {
+                    Some(_) if board.link_room() == 0 => {
+                        self.statistics.cut = self.statistics.cut.saturating_add(1);
+                    }
                     Some(byte) => board.link_send(&[byte]),
                     None => break,
                 }

@@ -59,7 +59,10 @@ fn no_flood_makes_an_attitude_younger() {
         let late = [Some(Err(Refusal::Attitude)), Some(Err(Refusal::Overrun))];
         assert!(late.contains(&answer), "{count} plans: {answer:?}");
     }
-    assert!(begun >= 2 && refused >= 8, "{begun} begun, {refused} refused");
+    assert!(
+        begun >= 2 && refused >= 8,
+        "{begun} begun, {refused} refused"
+    );
 }
 
 /// Whatever is asked meanwhile, and however long it takes: soft in 100 ms, off in 300.
