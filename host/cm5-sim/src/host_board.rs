@@ -14,6 +14,8 @@ use std::collections::VecDeque;
 const TICK_NS: u64 = TICK_US as u64 * 1000;
 /// A byte of 8N1 on the PC line, ns.
 const LINK_BYTE_NS: u64 = 10_000_000_000 / LINK_BAUD as u64;
+/// The chip's queue from the PC, bytes.
+const WAITING: usize = 127;
 /// The chip's queue towards the PC, bytes.
 const ROOM: usize = 255;
 const EEPROM_BYTE_NS: u64 = 8_500_000;
@@ -29,6 +31,9 @@ pub struct HostBoard {
     pub bus: Bus,
     /// Bytes on a line, each with the moment its stop bit ends.
     from_pc: VecDeque<(u64, u8)>,
+    /// Those that have arrived and were not taken, and those that found no room.
+    waiting: VecDeque<u8>,
+    lost: u8,
     to_pc: VecDeque<(u64, u8)>,
     /// When the line to the PC is free.
     free_ns: u64,
@@ -75,6 +80,8 @@ impl HostBoard {
             next_tick_ns: now_ns + TICK_NS,
             bus,
             from_pc: VecDeque::new(),
+            waiting: VecDeque::new(),
+            lost: 0,
             to_pc: VecDeque::new(),
             free_ns: 0,
             buttons: 0,
@@ -136,8 +143,8 @@ impl HostBoard {
             if self.now_ns >= until_ns || (until_byte && has_arrived) {
                 return;
             }
-            if self.now_ns >= self.next_tick_ns {
-                // A tick was longer than its period: the next one begins at once.
+            if self.now_ns >= self.next_tick_ns || !self.waiting.is_empty() {
+                // A tick was longer than its period, or a command took long: it goes on at once.
                 continue;
             }
             let next = [
@@ -206,14 +213,23 @@ impl Board for HostBoard {
     }
 
     fn link_receive(&mut self) -> Option<u8> {
-        let (ends, byte) = self.from_pc.front().copied()?;
-        (ends <= self.now_ns).then(|| self.from_pc.pop_front())?;
+        while let Some((ends, byte)) = self.from_pc.front().copied()
+            && ends <= self.now_ns
+        {
+            self.from_pc.pop_front();
+            if self.waiting.len() < WAITING {
+                self.waiting.push_back(byte);
+            } else {
+                self.lost = self.lost.saturating_add(1);
+            }
+        }
+        let byte = self.waiting.pop_front()?;
         self.now_ns += self.byte_ns;
         Some(byte)
     }
 
     fn link_overruns(&mut self) -> u8 {
-        0
+        std::mem::take(&mut self.lost)
     }
 
     fn link_room(&self) -> usize {
