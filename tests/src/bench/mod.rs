@@ -16,6 +16,7 @@ mod robot;
 mod run;
 #[cfg(unix)]
 mod serve;
+mod servo_faults;
 mod servos;
 mod stream;
 
@@ -40,5 +41,6 @@ pub use robot::model;
 pub use run::REPORT_MS;
 #[cfg(unix)]
 pub use serve::serve;
+pub use servo_faults::{gyro_at_rail, restart};
 pub use servos::{Rig, corners, random_starts};
 pub use stream::{StreamRun, stream};

@@ -153,31 +153,20 @@ pub fn a_servo_gives_up_while_balancing(bench: &mut impl SimulatedCm5, way: Give
 /// A servo loses its RAM while it is sent goals, so many ticks after arming: within two rounds of
 /// the housekeeping the robot is let down, and the servo named.
 pub fn a_restart_is_noticed(bench: &mut impl SimulatedCm5, id: u8, phase: u8) {
-    let goals = Command::Goals(Positions::pack([540; SERVOS]));
-    let go = |bench: &mut _, ticks: u8| {
-        for _ in 0..ticks {
-            say_it(bench, &goals);
-        }
-    };
-    arm(bench);
-    go(bench, 10 + phase);
-    bench.bus().servo(id).expect("18 servos").restart();
-    go(bench, 22);
-    let state = condition(bench);
-    let fault = Condition::Fault(Cause::TorqueLost);
+    let noticed_ms = restart(bench, id, phase);
     assert!(
-        [Some(Condition::Soft), Some(fault)].contains(&state),
-        "servo {id}, phase {phase}: {state:?}"
+        noticed_ms.is_some_and(|ms| ms <= 200.0),
+        "servo {id}, phase {phase}: {noticed_ms:?} ms"
     );
-    go(bench, 20);
+    let goals = Command::Goals(Positions::pack([540; SERVOS]));
+    for _ in 0..20 {
+        bench.send(&goals);
+        bench.run_ms(10.0);
+    }
+    let fault = Condition::Fault(Cause::TorqueLost);
     assert_eq!(condition(bench), Some(fault), "servo {id}, phase {phase}");
     assert!(!bench.bus().any_torque());
     assert_eq!(tripped(bench).map(|servo| servo.id), Some(id));
-}
-
-fn say_it(bench: &mut impl SimulatedCm5, command: &Command) {
-    bench.send(command);
-    bench.run_ms(10.0);
 }
 
 /// Eighteen servos and one more of this id.
