@@ -20,6 +20,8 @@ pub struct Bus {
     robot: Option<Robot>,
     parser: Box<Parser<MAX_PACKET>>,
     bad_checksum: BadChecksum,
+    /// Ends of the last bytes of the controller, ns, the newest last.
+    heard_ns: VecDeque<u64>,
     line: VecDeque<(u64, u8)>,
     now_ns: u64,
     /// Ends of the broadcasts that switched torque off, ns: what a safety test looks for.
@@ -50,6 +52,7 @@ impl Bus {
             robot: None,
             parser: Box::default(),
             bad_checksum: BadChecksum::default(),
+            heard_ns: VecDeque::new(),
             line: VecDeque::new(),
             now_ns: 0,
             torque_offs: Vec::new(),
@@ -110,6 +113,10 @@ impl Bus {
     /// Receive a byte from the controller, whose stop bit ended at `now_ns`.
     pub fn receive(&mut self, now_ns: u64, byte: u8) {
         self.advance(now_ns);
+        self.heard_ns.push_back(now_ns);
+        if self.heard_ns.len() > MAX_PACKET {
+            self.heard_ns.pop_front();
+        }
         let byte = self.collided(now_ns, byte);
         let mut faults = (self.servos.iter().map(|servo| &servo.faults))
             .chain(self.x.servos.iter().map(|servo| &servo.faults));
@@ -127,7 +134,9 @@ impl Bus {
             return;
         };
         let id = packet.id();
-        let began_ns = now_ns.saturating_sub(packet.bytes().len() as u64 * BYTE_NS);
+        let first = self.heard_ns.len().saturating_sub(packet.bytes().len());
+        let first_ns = self.heard_ns.get(first).copied().unwrap_or(now_ns);
+        let began_ns = first_ns.saturating_sub(BYTE_NS);
         if is_torque_off(id, request) {
             self.torque_offs.push(now_ns);
         }

@@ -181,13 +181,7 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
     let others = (0..SERVOS).filter(|place| *place != 4);
     for place in others {
         let missing = run.reports.iter().filter(|(_, r)| !r.is_present(place));
-        // The end of a twin's long answer may meet the request to the next servo.
-        let most = if place == 5 {
-            run.reports.len() / 50
-        } else {
-            0
-        };
-        assert!(missing.count() <= most, "servo {}", place + 1);
+        assert_eq!(missing.count(), 0, "servo {}", place + 1);
     }
     let heard = run.reports.iter().filter(|(_, r)| r.is_present(4)).count();
     // While its motor interrupt holds one of them back, the other one is heard whole.
@@ -209,7 +203,9 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
         "{counted:?}"
     );
     let (before, after) = (counted.missed[3], counted.missed[5]);
-    assert!(before == 0 && after <= 10, "{counted:?}");
+    // While arming the twins were read whole, now and then: the end of so long an answer meets the
+    // request to the next servo.
+    assert!(before == 0 && after <= 5, "{counted:?}");
 }
 
 pub fn twins_do_not_balance(bench: &mut impl SimulatedCm5, id: u8) {

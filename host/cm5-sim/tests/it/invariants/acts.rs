@@ -87,6 +87,7 @@ impl Judged {
                     self.odd.push(id);
                 }
                 self.servo(*at).faults.dead = *dead;
+                self.deafen();
                 self.disturb(*at);
             }
             Step::Overload(at) => {
@@ -168,7 +169,14 @@ impl Judged {
         }
     }
 
+    /// Faults that spoil requests change: what was missed under them is said again.
+    fn deafen(&mut self) {
+        let now_ms = self.cm5.now_ms();
+        self.deaf_ms.fill(now_ms);
+    }
+
     fn ready(&mut self, mode: Mode) {
+        self.deafen();
         for at in 0..IDS.len() {
             let servo = self.servo(at);
             servo.faults.dead = false;
@@ -204,6 +212,9 @@ impl Judged {
     }
 
     fn servo_fault(&mut self, at: usize, fault: ServoFault) {
+        if let ServoFault::Corrupt(_) | ServoFault::Late(_) = fault {
+            self.deafen();
+        }
         self.disturb(at);
         self.has_restarted[at] |= matches!(fault, ServoFault::Restarts);
         let servo = self.servo(at);

@@ -97,7 +97,7 @@ impl Judged {
         self.odd.extend(deaf.map(|servo| servo.id()));
         // Nor is what missed torque off before, and is not heard now.
         let had_torque = self.had_torque.iter().zip(IDS).enumerate();
-        let unheard = had_torque.filter(|(at, (had, _))| **had && self.is_disturbed(*at));
+        let unheard = had_torque.filter(|(at, (had, _))| **had && self.may_be_deaf(*at));
         let unheard: Vec<u8> = unheard.map(|(_, (_, id))| id).collect();
         self.odd.extend(unheard);
     }
@@ -107,8 +107,7 @@ impl Judged {
         let Some(off_ms) = self.off_ms else { return };
         for (at, servo) in self.cm5.board.bus.servos.iter().enumerate() {
             let id = servo.id();
-            let may_have_missed = servo.faults.corrupt_request > 0.0;
-            let is_odd = may_have_missed || self.is_disturbed(at) || self.odd.contains(&id);
+            let is_odd = self.may_be_deaf(at) || self.odd.contains(&id);
             assert!(
                 is_odd || !servo.torque_is_on(),
                 "servo {id} is torqued, {:.1} ms after torque off, in {:?}",

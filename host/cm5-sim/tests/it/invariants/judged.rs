@@ -45,8 +45,9 @@ pub(super) struct Judged {
     pub(super) looked_ms: f64,
     /// What arming named.
     pub(super) limits: ArmLimits,
-    /// When each servo was last disturbed, ms.
+    /// When each servo was last disturbed, ms, and when it may have missed a request.
     pub(super) disturbed_ms: Vec<f64>,
+    pub(super) deaf_ms: Vec<f64>,
     pub(super) has_noise: bool,
     /// Whether each servo restarted and may not have been read since.
     pub(super) has_restarted: Vec<bool>,
@@ -115,6 +116,7 @@ impl Judged {
             looked_ms: 0.0,
             limits: ArmLimits::NONE,
             disturbed_ms: vec![f64::NEG_INFINITY; IDS.len()],
+            deaf_ms: vec![f64::NEG_INFINITY; IDS.len()],
             has_noise: false,
             has_restarted: vec![false; IDS.len()],
             had_torque: vec![false; IDS.len()],
@@ -187,7 +189,8 @@ impl Judged {
         };
     }
 
-    /// A servo may do what it was told before, or what noise told it, until it was read.
+    /// A servo that restarted, or was silent, or whose answers were spoilt: the firmware knows its
+    /// goal, and whether it gave up, only when it was read.
     pub(super) fn disturb(&mut self, at: usize) {
         self.disturbed_ms[at] = self.cm5.now_ms();
     }
@@ -201,6 +204,18 @@ impl Judged {
         let is_unsure = faults.corrupt_request + faults.stray + faults.late > 0.0;
         let is_new = self.cm5.now_ms() - self.disturbed_ms[at] < READ_MS;
         faults.dead || is_unsure || self.has_noise || is_new
+    }
+
+    /// Whether a servo may not have heard torque off, which is said again for 200 ms: it is dead, or
+    /// requests to it are corrupted, or meet an answer that comes late. Noise is the controller's
+    /// alone, and a stray byte comes with an answer.
+    pub(super) fn may_be_deaf(&self, at: usize) -> bool {
+        const SAID_MS: f64 = 250.0;
+        let servos = &self.cm5.board.bus.servos;
+        let faults = &servos[at].faults;
+        let collides = servos.iter().any(|servo| servo.faults.late > 0.0);
+        let is_new = self.cm5.now_ms() - self.deaf_ms[at] < SAID_MS;
+        faults.dead || faults.corrupt_request > 0.0 || collides || is_new
     }
 
     pub(super) fn set_gyro(&mut self, code: u16) {
