@@ -57,7 +57,12 @@ fn no_flood_makes_an_attitude_younger() {
         refused += 1;
         // Ticks that were late are another reason.
         let late = [Some(Err(Refusal::Attitude)), Some(Err(Refusal::Overrun))];
-        assert!(late.contains(&answer), "{count} plans: {answer:?}");
+        // The queue of 127 bytes has no room for more than nine frames: the one that arms is lost.
+        let is_lost = answer.is_none() && count > 9;
+        assert!(
+            is_lost || late.contains(&answer),
+            "{count} plans: {answer:?}"
+        );
     }
     assert!(
         begun >= 2 && refused >= 8,
