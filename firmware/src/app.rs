@@ -3,7 +3,7 @@
 use crate::age::Age;
 use crate::balance::Balance;
 use crate::board::Board;
-use crate::design::{CLOCK_PER_US, INSIST_US, START_TICKS, TICK_US};
+use crate::design::{INSIST_US, START_TICKS};
 use crate::fault_log::FaultLog;
 use crate::filter::{Filter, Way};
 use crate::link::Link;
@@ -11,8 +11,7 @@ use crate::panel::Buttons;
 use crate::plan_store::Writer;
 use crate::servos::Servos;
 use crate::{boot_counter, bus};
-use handstand_shared::message::{ArmLimits, Attitude, Cause, Condition, ServoList, Statistics};
-use handstand_shared::packed::{Positions, Speeds};
+use handstand_shared::message::{Attitude, Cause, Condition, ServoList, Statistics};
 
 mod arming;
 mod buttons;
@@ -21,34 +20,14 @@ mod faults;
 mod modes;
 mod soft_stop;
 mod state;
+mod tick_times;
+mod tokens;
 
 use arming::Arming;
+use state::{Armed, Fading, Goal, Onset};
 pub use state::{State, Torque};
-
-/// What the host wants of the servos.
-#[derive(Debug, Clone, Copy)]
-enum Goal {
-    /// Nothing since arming: stay.
-    Hold,
-    Positions(Positions),
-    Speeds(Speeds),
-}
-
-/// Torque comes on in steps, a tick each: in one tick all of it would make its report late, and
-/// with it the host's attitude for the next one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Onset {
-    /// It comes on in those that balance, with the law's first command.
-    Balance,
-    /// The others get goals where they stand, half of the servo list from this place on.
-    Goals(u8),
-    /// The others have torque, too, half of the list from this place on.
-    Others(u8),
-    /// While streaming all have their goals, and get torque in the next tick.
-    Torque,
-    /// All have it.
-    Done,
-}
+use tick_times::TickTimes;
+use tokens::{Token, Tokens};
 
 /// The firmware, apart from its hardware.
 #[derive(Debug)]
@@ -61,50 +40,25 @@ pub struct App {
     buttons: Buttons,
     writer: Writer,
     faults: FaultLog,
-    goal: Goal,
     balance: Balance,
     attitude: Attitude,
     /// Since it arrived.
     attitude_age: Age,
-    /// Sequence number of the frame `goal` came in.
-    obeyed: u8,
-    /// What arming must bring; none before a greeting and after every fault.
-    token: Option<u16>,
-    /// Whether it has armed: it does so once.
-    is_used: bool,
-    /// Number of this start, and of the greetings in it from a number of chance on: what tokens are
-    /// made of.
-    boot_count: u8,
-    greetings: Option<u8>,
+    tokens: Tokens,
     ticks: u32,
+    times: TickTimes,
     /// Since the host's last goals, attitude or keep-alive: nothing else is a sign of life.
     life: Age,
-    /// The longest of it since arming, ms.
-    longest_silence_ms: u16,
+    /// The longest of it since arming, us.
+    longest_silence_us: u32,
     /// Since nothing from the PC was left to be taken: what is taken now arrived later.
     emptied: Age,
     /// Since torque was switched off; old where somebody else may have switched it on.
     off: Age,
-    /// Since the torque limit began to fall.
-    fading: Age,
     /// Arming that has begun: the limits are written and read back before torque comes on.
     arming: Option<Arming>,
-    /// What arming brought.
-    limits: ArmLimits,
-    /// How far torque has come on while balancing.
-    onset: Onset,
-    /// Ticks since one was too long.
-    calm: u8,
-    /// Since a round of the housekeeping told of a low supply, if every one has since then.
-    low: Option<Age>,
-    overruns: u16,
-    tick_us: u16,
-    longest_tick_us: u16,
-    longest_law_us: u16,
     /// The gyro's code as it is reported: when the tick began, or what the law took.
     gyro: u16,
-    /// When the next tick is due, in counts of the clock; none before the first.
-    due: Option<u16>,
     /// Whether it has looked for a plan.
     has_looked: bool,
     /// Whether the plan it has is the one in EEPROM, and not the one compiled in.
@@ -132,32 +86,18 @@ impl App {
             writer: Writer::new(board),
             // Before the boot counter: reading waits for what is being written.
             faults: FaultLog::new(board),
-            goal: Goal::Hold,
             balance: Balance::NONE,
             attitude: Attitude::default(),
             attitude_age: Age::NEVER,
-            obeyed: 0,
-            token: None,
-            is_used: false,
-            boot_count: boot_counter::count(board) as u8,
-            greetings: None,
+            tokens: Tokens::of_start(boot_counter::count(board) as u8),
             ticks: 0,
+            times: TickTimes::default(),
             life: Age::NEVER,
-            longest_silence_ms: 0,
+            longest_silence_us: 0,
             emptied: Age::from(board.clock()),
             off: Age::from(board.clock()),
-            fading: Age::NEVER,
             arming: None,
-            limits: ArmLimits::NONE,
-            onset: Onset::Done,
-            calm: 0,
-            low: None,
-            overruns: 0,
-            tick_us: 0,
-            longest_tick_us: 0,
-            longest_law_us: 0,
             gyro: 0,
-            due: None,
             has_looked: false,
             is_stored: false,
         }
@@ -217,9 +157,12 @@ impl App {
                 break;
             }
         }
-        if self.state == State::Bridge {
+        if matches!(self.state, State::Bridge) {
             for _ in 0..64 {
                 match board.bus_receive(0) {
+                    Some(_) if board.link_room() == 0 => {
+                        self.statistics.cut = self.statistics.cut.saturating_add(1);
+                    }
                     Some(byte) => board.link_send(&[byte]),
                     None => break,
                 }
@@ -230,7 +173,7 @@ impl App {
     /// Takes a byte from the PC; whether it completed a command that takes long.
     #[inline(never)]
     fn take<B: Board>(&mut self, board: &mut B, byte: u8) -> bool {
-        if self.state == State::Bridge && self.filter.push(byte) == Way::Bus {
+        if matches!(self.state, State::Bridge) && self.filter.push(byte) == Way::Bus {
             // What was being said when the controller restarted switches no torque on.
             if self.ticks >= START_TICKS {
                 self.off = Age::NEVER;
@@ -257,7 +200,7 @@ impl App {
     #[inline(never)]
     pub fn tick<B: Board>(&mut self, board: &mut B) {
         let started = board.clock();
-        let due = self.due_before(started);
+        let due = self.times.begin(started);
         self.ticks = self.ticks.wrapping_add(1);
         self.pass(started);
         self.panel(board);
@@ -284,39 +227,17 @@ impl App {
                 self.watch(board, started);
             }
             State::Fault(_) => self.insist(board, started),
-            State::Stream(Torque::On) => self.stream(board, started),
-            State::Balance(Torque::On) => self.balance(board, started),
+            State::Stream(Torque::On(_)) => self.stream(board, started),
+            State::Balance(Torque::On(_)) => self.balance(board, started),
             // Readings first: a new torque limit would clear what a servo that gave up says.
-            State::Stream(Torque::Fading { cause }) => {
+            State::Stream(Torque::Fading(_)) | State::Balance(Torque::Fading(_)) => {
                 self.watch(board, started);
-                self.fade(board, cause, State::Stream);
-            }
-            State::Balance(Torque::Fading { cause }) => {
-                self.watch(board, started);
-                self.fade(board, cause, State::Balance);
+                self.fade(board);
             }
         }
         self.account(board, due);
         // Between ticks, as commands: what it takes shows where it makes the next tick late.
         self.finish_arming(board);
-    }
-
-    /// When this tick was due: ticks that begin late are late for the servos, however short they
-    /// are. The earliest phase counts; one that was skipped is an overrun.
-    fn due_before(&mut self, started: u16) -> u16 {
-        const PERIOD: u16 = TICK_US * CLOCK_PER_US;
-        let mut due = self.due.unwrap_or(started);
-        // More than half of the clock's range late is early.
-        while started.wrapping_sub(due) < 0x8000 && started.wrapping_sub(due) >= PERIOD {
-            due = due.wrapping_add(PERIOD);
-            self.overruns = self.overruns.saturating_add(1);
-            self.calm = 0;
-        }
-        if started.wrapping_sub(due) >= 0x8000 {
-            due = started;
-        }
-        self.due = Some(due.wrapping_add(PERIOD));
-        due
     }
 
     /// Time passes.
@@ -325,17 +246,13 @@ impl App {
             &mut self.life,
             &mut self.attitude_age,
             &mut self.off,
-            &mut self.fading,
             &mut self.emptied,
         ] {
             age.pass(clock);
         }
-        if let Some(low) = &mut self.low {
-            low.pass(clock);
-        }
+        self.state.pass(clock);
         if self.is_armed() {
-            let silence_ms = u16::try_from(self.life.us() / 1000).unwrap_or(u16::MAX);
-            self.longest_silence_ms = self.longest_silence_ms.max(silence_ms);
+            self.longest_silence_us = self.longest_silence_us.max(self.life.us());
         }
     }
 

@@ -1,12 +1,12 @@
 //! Balancing on board: one tick of reading, law and command.
 
 use crate::design::{POSE_ANGLE, POSE_RATE};
-use crate::servos::{Servo, Servos};
+use crate::servos::{Driven, Servo, Servos};
 use handstand_shared::crc::extend32;
 use handstand_shared::fixed::saturate;
 use handstand_shared::law::control;
 use handstand_shared::observer::{self, FINE, READINGS};
-use handstand_shared::plan::{AppliedInput, Joint, Law, Plan};
+use handstand_shared::plan::{AppliedInput, Law, Plan};
 use handstand_shared::raw::Signed;
 use handstand_shared::velocity;
 
@@ -159,18 +159,16 @@ impl Balance {
         self.fingerprint.map(|_| [shoulder.id, hip.id])
     }
 
-    /// All servos it commands; 255 where a joint has one only.
-    pub fn servos(&self) -> [u8; 4] {
-        let [shoulder, hip] = &self.plan.joints;
-        [shoulder.id, shoulder.mirror, hip.id, hip.mirror]
+    /// All servos it commands.
+    pub fn servos(&self) -> Driven {
+        Driven::of(&self.plan.joints)
     }
 
     /// Whether all servos it commands turn without end: others would take its commands for speeds
     /// on the way to their goals.
     pub fn are_wheels(&self, servos: &Servos) -> bool {
-        let is_wheel = |id: u8| id >= 254 || servos.is_wheel(id);
-        let are_wheels = |joint: &Joint| is_wheel(joint.id) && is_wheel(joint.mirror);
-        self.plan.joints.iter().all(are_wheels)
+        let driven = self.servos();
+        driven.ids().iter().all(|id| servos.is_wheel(*id))
     }
 
     /// Whether all links are near the operating point, and the first one turns slowly.
@@ -210,16 +208,14 @@ impl Balance {
 
     /// The servos' commands at these readings, each with its id.
     #[inline(never)]
-    pub fn commands(
-        &mut self,
-        readings: &[i16; READINGS],
-    ) -> impl Iterator<Item = (u8, Signed)> + use<> {
+    pub fn commands(&mut self, readings: &[i16; READINGS]) -> [Option<(u8, Signed)>; 4] {
         let [u2, u3] = self.raw_command(readings);
         let [shoulder, hip] = &self.plan.joints;
         let [applied2, applied3] = &mut self.applied;
         let (u2, u3) = (shoulder.apply(applied2, u2), hip.apply(applied3, u3));
-        let first = shoulder.commands(shoulder.command(u2));
-        first.chain(hip.commands(hip.command(u3)))
+        let [a, b] = shoulder.commands(shoulder.command(u2));
+        let [c, d] = hip.commands(hip.command(u3));
+        [a, b, c, d]
     }
 
     fn raw_command(&mut self, readings: &[i16; READINGS]) -> [i16; 2] {
@@ -265,11 +261,8 @@ impl Balance {
 
     /// Whether all servos it commands answered.
     pub fn has_servos(&self, servos: &Servos) -> bool {
-        let there = |id: u8| id >= 254 || servos.with_id(id).is_some_and(Servo::is_present);
-        self.plan
-            .joints
-            .iter()
-            .all(|joint| there(joint.id) && there(joint.mirror))
+        let is_there = |id: &u8| servos.with_id(*id).is_some_and(Servo::is_present);
+        self.servos().ids().iter().all(is_there)
     }
 
     /// The operating point with compensation: the first link's angle, and both joints' in codes.

@@ -98,7 +98,7 @@ pub trait Board {
     fn reset_cause(&self) -> ResetCause;
 
     /// How deep the stack has been, and how much of it there is, bytes.
-    fn stack(&self) -> (u16, u16);
+    fn stack(&mut self) -> (u16, u16);
 }
 
 /// Microseconds from `start` until now.

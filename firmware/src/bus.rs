@@ -3,8 +3,10 @@
 //! A request goes out while the program does something else, such as looking at the answer before
 //! it.
 
-use crate::board::Board;
-use crate::design::{ANSWER_US, BETWEEN_BYTES_US, BETWEEN_WRITES_US, FIRST_BYTE_US, FLUSH_BYTES};
+use crate::board::{Board, since_us};
+use crate::design::{
+    ANSWER_US, BETWEEN_BYTES_US, BETWEEN_WRITES_US, COMMANDS_US, FIRST_BYTE_US, FLUSH_BYTES,
+};
 use handstand_shared::control_table::{Register, TORQUE_ENABLE};
 use handstand_shared::dynamixel::{
     BROADCAST, ErrorBits, OVERHEAD, Request, WHOLE_SUM, check_byte, sync_write_head,
@@ -147,6 +149,13 @@ pub fn torque_off<B: Board>(board: &mut B) {
 /// Waits as long as a servo may need to obey a write: it ignores one that comes before.
 pub fn pause<B: Board>(board: &mut B) {
     board.wait(BETWEEN_WRITES_US);
+}
+
+/// Waits until servos obey another write after one of commands that was handed over at this reading
+/// of the clock.
+pub fn pause_since<B: Board>(board: &mut B, handed_over: u16) {
+    const US: u16 = COMMANDS_US + BETWEEN_WRITES_US;
+    board.wait(US.saturating_sub(since_us(board, handed_over)));
 }
 
 /// Writes a value of its own to a register of each of `servos` servos, in one packet, which goes

@@ -29,8 +29,11 @@ pub const ANSWER_US: u16 = 800;
 /// too close. What they need is not published; bring-up measures it.
 pub const BETWEEN_WRITES_US: u16 = 200;
 
+/// Longest time in which the commands of four servos are out, us: 20 bytes of 10 us.
+pub const COMMANDS_US: u16 = 200;
+
 /// Ticks in which the limits that arming names are written, in turn, and read back: 18 servos are
-/// read in nine. Beyond, a servo that could not be read is left out, and one that does not hold
+/// read in nine and more. Beyond, a servo that could not be read is left out, and one that does not hold
 /// them refused.
 pub const ARMING_TICKS: u8 = 30;
 

@@ -5,11 +5,24 @@ use handstand_shared::frame::{Decoder, MAX_FRAME};
 use handstand_shared::message::{Command, Numbered, Report, Statistics, decode, encode};
 
 /// Both directions of the line.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Link {
     decoder: Decoder,
+    /// The frame that was sent last: to clear one for each takes time.
+    frame: [u8; MAX_FRAME],
     next_out: u8,
     next_in: Option<u8>,
+}
+
+impl Default for Link {
+    fn default() -> Self {
+        Link {
+            decoder: Decoder::default(),
+            frame: [0; MAX_FRAME],
+            next_out: 0,
+            next_in: None,
+        }
+    }
 }
 
 impl Link {
@@ -51,14 +64,13 @@ impl Link {
 
     /// Queues a report; false if there is no room for all of it now.
     pub fn send<B: Board>(&mut self, board: &mut B, report: &Report) -> bool {
-        let mut frame = [0; MAX_FRAME];
-        let Some(length) = encode(self.next_out, report, &mut frame) else {
+        let Some(length) = encode(self.next_out, report, &mut self.frame) else {
             return false;
         };
         if board.link_room() < length {
             return false;
         }
-        board.link_send(frame.get(..length).unwrap_or(&[]));
+        board.link_send(self.frame.get(..length).unwrap_or(&[]));
         self.next_out = self.next_out.wrapping_add(1);
         true
     }

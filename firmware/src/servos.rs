@@ -3,6 +3,7 @@
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::message::{ArmLimits, Cause, Housekeeping, ServoList, TrippedServo};
 use handstand_shared::packed::{Positions, SERVOS};
+use handstand_shared::plan::Joint;
 use handstand_shared::raw::{Position, ReturnDelay, Supply};
 
 mod commands;
@@ -10,6 +11,7 @@ mod mode;
 mod registers;
 mod round;
 
+pub use commands::Limit;
 use mode::ServoMode;
 use registers::Registers;
 
@@ -46,8 +48,6 @@ pub struct Servo {
     pub armed: bool,
     /// Whether its registers were read, and are as they were written.
     registers: Registers,
-    /// Whether they are read in this tick.
-    is_read_whole: bool,
     /// The goal it was last sent.
     pub goal: Position,
 }
@@ -64,7 +64,6 @@ impl Servo {
             unanswered: u8::MAX,
             armed: false,
             registers: Registers::Unread,
-            is_read_whole: false,
             goal: Position::CENTRE,
         }
     }
@@ -110,6 +109,35 @@ impl Servo {
     }
 }
 
+/// The servos that balancing commands: of each joint the one that measures and drives, and the one
+/// that drives along, if one does.
+#[derive(Debug, Clone, Copy)]
+pub struct Driven {
+    ids: [u8; 4],
+    count: u8,
+}
+
+impl Driven {
+    /// Those of these joints.
+    pub fn of(joints: &[Joint; 2]) -> Self {
+        let mut driven = Driven {
+            ids: [0; 4],
+            count: 0,
+        };
+        let ids = joints.iter().flat_map(Joint::servos).flatten();
+        for (slot, id) in driven.ids.iter_mut().zip(ids) {
+            *slot = id;
+            driven.count += 1;
+        }
+        driven
+    }
+
+    /// Their ids.
+    pub fn ids(&self) -> &[u8] {
+        self.ids.get(..usize::from(self.count)).unwrap_or(&[])
+    }
+}
+
 /// All of them, in the servo list's order.
 #[derive(Debug, Clone)]
 pub struct Servos {
@@ -124,6 +152,9 @@ pub struct Servos {
     /// Place of the first servo whose housekeeping are read in this tick.
     pub housekeeping_from: u8,
     housekeeping_second: u8,
+    /// Places of those whose registers are read in this tick: one in turn, and one that must be.
+    whole_in_turn: Option<u8>,
+    whole_unread: Option<u8>,
     /// The housekeeping read in this tick.
     pub housekeeping: [Housekeeping; 2],
     /// The lowest supply in the round of housekeeping before this one.
@@ -151,6 +182,8 @@ impl Servos {
             asked: 0,
             housekeeping_from: 0,
             housekeeping_second: 0,
+            whole_in_turn: None,
+            whole_unread: None,
             housekeeping: [round::SILENT; 2],
             supply: None,
             lowest: PART_OF_A_ROUND,
@@ -176,6 +209,8 @@ impl Servos {
         self.asked = 0;
         self.housekeeping_from = 0;
         self.housekeeping_second = u8::from(self.count > 1);
+        self.whole_in_turn = None;
+        self.whole_unread = None;
         self.housekeeping = [round::SILENT; 2];
         self.supply = None;
         self.lowest = Supply(u8::MAX);
@@ -188,27 +223,16 @@ impl Servos {
     /// Reads these two last, the second of them after the first; the others in the list's order.
     #[inline(never)]
     pub fn read_last(&mut self, ids: [u8; 2]) {
-        let count = self.count;
-        let mut order = [0; SERVOS];
-        let mut slots = order.iter_mut();
-        let [first, second] = ids;
-        for turn in 0..3 {
-            for (place, servo) in (0..count).zip(&self.servos) {
-                let own = if servo.id == first {
-                    1
-                } else if servo.id == second {
-                    2
-                } else {
-                    0
-                };
-                if own == turn
-                    && let Some(slot) = slots.next()
-                {
-                    *slot = place;
-                }
-            }
-        }
-        self.order = order;
+        let last = ids.map(|id| self.place_of(id));
+        let others = (0..self.count).filter(|place| !last.contains(&Some(*place)));
+        let all = others.chain(last.into_iter().flatten());
+        (self.order.iter_mut().zip(all)).for_each(|(slot, place)| *slot = place);
+    }
+
+    fn place_of(&self, id: u8) -> Option<u8> {
+        let mut places = (0..).zip(self.all());
+        let own = places.find(|(_, servo)| servo.id == id);
+        own.map(|(place, _)| place)
     }
 
     /// Place of the servo that is read at this turn; beyond the last one, a place that is none.
@@ -272,13 +296,16 @@ impl Servos {
         !self.all().iter().any(Servo::owes_mode)
     }
 
-    /// Those that did not answer in this tick: a bit each.
-    pub fn missing(&self) -> u32 {
-        // A bit that moves on: shifting by a variable costs the AVR a loop.
-        let (mut missing, mut bit) = (0u32, 1u32);
-        for servo in self.all() {
-            missing |= if servo.is_present() { 0 } else { bit };
-            bit <<= 1;
+    /// Those that did not answer in this tick: a bit each, the lowest first.
+    pub fn missing(&self) -> [u8; 3] {
+        let mut missing = [0; 3];
+        for (bits, eight) in missing.iter_mut().zip(self.all().chunks(8)) {
+            // A bit that moves on: shifting by a variable costs the AVR a loop.
+            let mut bit = 1u8;
+            for servo in eight {
+                *bits |= if servo.is_present() { 0 } else { bit };
+                bit = bit.wrapping_shl(1);
+            }
         }
         missing
     }

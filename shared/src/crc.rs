@@ -2,9 +2,12 @@
 //! mistaken.
 //!
 //! 0xA2EB keeps Hamming distance 6 up to 13 bytes and 4 up to 64 (Koopman & Chakravarty 2004,
-//! "Cyclic redundancy code polynomial selection for embedded networks"). The AVR looks up half
-//! bytes, for its constants live in its 4096 bytes of RAM: 96 bytes of tables instead of 1536. The
-//! PC looks up bytes; both are the same function, and tested to be.
+//! "Cyclic redundancy code polynomial selection for embedded networks"). On the AVR constants live
+//! in its 4096 bytes of RAM. The CRC-16's table, which every byte of the line needs, lies in flash
+//! there; for CRC-32 it looks up half bytes, 64 bytes of a table instead of 1024.
+
+#[cfg(target_arch = "avr")]
+mod flash;
 
 /// Check value before the first byte.
 pub const START_16: u16 = 0xffff;
@@ -12,7 +15,7 @@ pub const START_16: u16 = 0xffff;
 /// CRC-16 of 0xA2EB, most significant bit first, over `bytes`, going on from `crc`.
 pub fn crc16(mut crc: u16, bytes: &[u8]) -> u16 {
     for byte in bytes {
-        crc = imp::byte16(crc, *byte);
+        crc = byte16(crc, *byte);
     }
     crc
 }
@@ -25,7 +28,7 @@ pub fn crc32(bytes: &[u8]) -> u32 {
 /// Goes on with an unfinished CRC-32: starts from all ones, ends inverted.
 pub fn extend32(mut crc: u32, bytes: &[u8]) -> u32 {
     for byte in bytes {
-        crc = imp::byte32(crc, *byte);
+        crc = byte32(crc, *byte);
     }
     crc
 }
@@ -58,17 +61,34 @@ const fn bitwise32(mut crc: u32, bits: u8) -> u32 {
     crc
 }
 
+/// What eight more bits make of the upper byte alone.
+const TABLE_16: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        table[byte] = bitwise16((byte as u16) << 8, 8);
+        byte += 1;
+    }
+    table
+};
+
+#[cfg(target_arch = "avr")]
+use flash::word_16;
+
+#[cfg(not(target_arch = "avr"))]
+fn word_16(byte: u8) -> u16 {
+    TABLE_16[usize::from(byte)]
+}
+
+#[inline(always)]
+fn byte16(crc: u16, byte: u8) -> u16 {
+    // By bytes, for the AVR has no others.
+    let [high, low] = crc.to_be_bytes();
+    u16::from_be_bytes([low, 0]) ^ word_16(high ^ byte)
+}
+
 #[cfg_attr(not(target_arch = "avr"), allow(dead_code))]
 mod half_bytes {
-    const TABLE_16: [u16; 16] = {
-        let mut table = [0; 16];
-        let mut half = 0;
-        while half < 16 {
-            table[half] = super::bitwise16((half as u16) << 12, 4);
-            half += 1;
-        }
-        table
-    };
     const TABLE_32: [u32; 16] = {
         let mut table = [0; 16];
         let mut half = 0;
@@ -79,13 +99,6 @@ mod half_bytes {
         table
     };
 
-    pub fn byte16(crc: u16, byte: u8) -> u16 {
-        let index = (crc >> 8) as u8 ^ byte;
-        let crc = crc << 4 ^ TABLE_16[usize::from(index >> 4)];
-        let index = (crc >> 12) as u8 ^ byte & 15;
-        crc << 4 ^ TABLE_16[usize::from(index & 15)]
-    }
-
     pub fn byte32(crc: u32, byte: u8) -> u32 {
         let crc = crc ^ byte as u32;
         let crc = crc >> 4 ^ TABLE_32[usize::from(crc as u8 & 15)];
@@ -95,15 +108,6 @@ mod half_bytes {
 
 #[cfg(not(target_arch = "avr"))]
 mod whole_bytes {
-    const TABLE_16: [u16; 256] = {
-        let mut table = [0; 256];
-        let mut byte = 0;
-        while byte < 256 {
-            table[byte] = super::bitwise16((byte as u16) << 8, 8);
-            byte += 1;
-        }
-        table
-    };
     const TABLE_32: [u32; 256] = {
         let mut table = [0; 256];
         let mut byte = 0;
@@ -114,19 +118,15 @@ mod whole_bytes {
         table
     };
 
-    pub fn byte16(crc: u16, byte: u8) -> u16 {
-        crc << 8 ^ TABLE_16[usize::from((crc >> 8) as u8 ^ byte)]
-    }
-
     pub fn byte32(crc: u32, byte: u8) -> u32 {
         crc >> 8 ^ TABLE_32[usize::from(crc as u8 ^ byte)]
     }
 }
 
 #[cfg(target_arch = "avr")]
-use half_bytes as imp;
+use half_bytes::byte32;
 #[cfg(not(target_arch = "avr"))]
-use whole_bytes as imp;
+use whole_bytes::byte32;
 
 #[cfg(test)]
 mod tests {
@@ -144,8 +144,7 @@ mod tests {
             let wide = u32::from(crc) << 16 ^ u32::from(crc).wrapping_mul(40_503);
             for byte in 0..=255 {
                 let slow = bitwise16(crc ^ u16::from(byte) << 8, 8);
-                assert_eq!(whole_bytes::byte16(crc, byte), slow);
-                assert_eq!(half_bytes::byte16(crc, byte), slow);
+                assert_eq!(byte16(crc, byte), slow);
                 let slow = bitwise32(wide ^ u32::from(byte), 8);
                 assert_eq!(whole_bytes::byte32(wide, byte), slow);
                 assert_eq!(half_bytes::byte32(wide, byte), slow);

@@ -61,20 +61,36 @@ pub fn encode_without(byte: u8, body: &[u8], out: &mut [u8; MAX_FRAME]) -> Optio
     encode(body, out)
 }
 
+/// The same where the body already lies in `out`, behind its first byte: a copy of it takes the AVR
+/// time and stack.
+pub fn encode_in_place(length: usize, out: &mut [u8; MAX_FRAME]) -> Option<usize> {
+    stuff(0, length, out)
+}
+
 fn encode_masked(selector: u8, body: &[u8], out: &mut [u8; MAX_FRAME]) -> Option<usize> {
-    if body.len() > MAX_BODY {
+    let slots = out.get_mut(1..=body.len())?;
+    (slots.iter_mut().zip(body)).for_each(|(slot, byte)| *slot = *byte ^ mask(selector));
+    stuff(selector, body.len(), out)
+}
+
+/// Stuffs a masked body in its place, and ends its frame.
+fn stuff(selector: u8, length: usize, out: &mut [u8; MAX_FRAME]) -> Option<usize> {
+    if length > MAX_BODY {
         return None;
     }
-    let stuffed = body.len() + 1;
+    let stuffed = length + 1;
+    let (first, body) = out.get_mut(..stuffed)?.split_first_mut()?;
     // From the back: how far the next zero is, is then known.
     let mut distance = 1;
-    for (at, byte) in body.iter().enumerate().rev() {
-        let byte = *byte ^ mask(selector);
-        let zero = byte == 0;
-        *out.get_mut(at + 1)? = if zero { distance } else { byte };
-        distance = if zero { 1 } else { distance + 1 };
+    for byte in body.iter_mut().rev() {
+        if *byte == 0 {
+            *byte = distance;
+            distance = 1;
+        } else {
+            distance += 1;
+        }
     }
-    *out.first_mut()? = distance;
+    *first = distance;
     let check = check_bytes(selector, out.get(..stuffed)?);
     let tail = out.get_mut(stuffed..stuffed + CHECK + 1)?;
     let ending = check.iter().chain(&[0]);

@@ -58,8 +58,18 @@ pub struct Observer {
     pub balance_places: [u8; JOINTS],
 }
 
-/// Steps of an update: the departures, then one per estimated state.
-const STEPS: u8 = 1 + ESTIMATED as u8;
+/// Work that is done in steps, while servos are awaited: what the next readings should be, then,
+/// once inputs were applied, the next estimate, and from it the readings behind it.
+///
+/// Of a prediction: the departures, then a row per reading.
+const PREDICT: u8 = 0;
+const PREDICT_ROW: u8 = PREDICT + 1;
+/// The readings are predicted; nothing is left.
+const PREDICTED: u8 = PREDICT_ROW + READINGS as u8;
+/// Of an update: the departures, then a row per estimated state.
+const UPDATE: u8 = PREDICTED + 1;
+/// The last row of an update; a prediction follows.
+const LAST: u8 = UPDATE + ESTIMATED as u8;
 
 /// State of the observer: estimate, past inputs, innovation and applied inputs, and the next
 /// estimate while it is computed.
@@ -68,8 +78,9 @@ pub struct Memory {
     all: [i16; WIDTH],
     departure: [i16; WIDTH],
     next: [i16; ESTIMATED],
-    /// Steps that are left until the next estimate counts; none if no update is under way.
-    left: u8,
+    predicted: [i16; READINGS],
+    /// The step that is next.
+    step: u8,
 }
 
 impl Memory {
@@ -82,7 +93,8 @@ impl Memory {
             all,
             departure: [0; WIDTH],
             next: [0; ESTIMATED],
-            left: 0,
+            predicted: [0; READINGS],
+            step: PREDICT,
         }
     }
 
@@ -148,7 +160,7 @@ impl Observer {
         }
     }
 
-    /// Raw command at these readings. Finishes a pending update first.
+    /// Raw command at these readings. Finishes what is pending first.
     pub fn raw_command(&self, memory: &mut Memory, readings: &[i16; READINGS]) -> [i16; INPUTS] {
         self.raw_command_of(memory, readings, [true; READINGS])
     }
@@ -162,10 +174,7 @@ impl Observer {
         is_heard: [bool; READINGS],
     ) -> [i16; INPUTS] {
         self.finish(memory);
-        let predicted = match memory.all.first_chunk() {
-            Some(state) => control(&self.predict, state),
-            None => [0; READINGS],
-        };
+        let predicted = memory.predicted;
         let place = memory.all.iter_mut().skip(STATE);
         let read = readings.iter().zip(self.reading_places).zip(predicted);
         for (to, (((reading, places), predicted), is_heard)) in place.zip(read.zip(is_heard)) {
@@ -191,30 +200,51 @@ impl Observer {
     pub fn begin_update(&self, memory: &mut Memory, applied: [i16; INPUTS]) {
         let place = memory.all.iter_mut().skip(SEEN);
         place.zip(applied).for_each(|(to, from)| *to = from);
-        memory.left = STEPS;
+        memory.step = UPDATE;
     }
 
-    /// A step of the pending update; false if there is none. After the last one the next estimate
-    /// is valid.
+    /// A step of what is pending; false if nothing is.
     #[inline(never)]
     pub fn step_update(&self, memory: &mut Memory) -> bool {
-        let left = memory.left;
-        if left == 0 {
-            return false;
-        }
-        if left == STEPS {
-            memory.departure = departure(&self.update.x0, &memory.all);
-        } else {
-            let at = ESTIMATED - usize::from(left);
-            if let (Some(row), Some(next)) = (self.update.rows.get(at), memory.next.get_mut(at)) {
-                *next = input(row, &memory.departure);
+        let step = memory.step;
+        match step {
+            PREDICTED => return false,
+            PREDICT => {
+                if let (Some(state), Some(out)) = (
+                    memory.all.first_chunk(),
+                    memory.departure.first_chunk_mut::<STATE>(),
+                ) {
+                    *out = departure(&self.predict.x0, state);
+                }
             }
+            UPDATE => memory.departure = departure(&self.update.x0, &memory.all),
+            PREDICT_ROW..PREDICTED => self.predict_row(memory, step),
+            _ => self.update_row(memory, step),
         }
-        memory.left = left - 1;
-        if memory.left == 0 {
+        memory.step = step + 1;
+        if step == LAST {
             memory.take_next();
+            memory.step = PREDICT;
         }
         true
+    }
+
+    fn predict_row(&self, memory: &mut Memory, step: u8) {
+        let at = usize::from(step - PREDICT_ROW);
+        if let (Some(row), Some(out), Some(state)) = (
+            self.predict.rows.get(at),
+            memory.predicted.get_mut(at),
+            memory.departure.first_chunk::<STATE>(),
+        ) {
+            *out = input(row, state);
+        }
+    }
+
+    fn update_row(&self, memory: &mut Memory, step: u8) {
+        let at = usize::from(step - UPDATE - 1);
+        if let (Some(row), Some(out)) = (self.update.rows.get(at), memory.next.get_mut(at)) {
+            *out = input(row, &memory.departure);
+        }
     }
 
     fn finish(&self, memory: &mut Memory) {

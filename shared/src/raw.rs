@@ -41,12 +41,16 @@ impl MovingSpeed {
     pub const LSB_RAD_S: f64 = 0.111 * 2.0 * PI / 60.0;
     /// No limit.
     pub const UNLIMITED: MovingSpeed = MovingSpeed(0);
+    /// The lowest limit.
+    pub const LEAST: MovingSpeed = MovingSpeed(1);
+    /// The highest limit: 12 rad/s.
+    pub const MOST: MovingSpeed = MovingSpeed(1023);
 
     /// The limit, rad/s; infinite if there is none.
     pub fn to_rad_s(self) -> f64 {
-        match self.0 {
-            0 => f64::INFINITY,
-            code => f64::from(code) * Self::LSB_RAD_S,
+        match self {
+            Self::UNLIMITED => f64::INFINITY,
+            Self(code) => f64::from(code) * Self::LSB_RAD_S,
         }
     }
 

@@ -4,11 +4,12 @@
 //! comes right behind another: they are written a tick apart, again and again until every servo
 //! that will be commanded has been read and holds them. Only then does torque come on.
 
-use super::{App, Goal, Onset, State, Torque};
+use super::{App, Armed, Onset, State, Token, Torque};
 use crate::age::Age;
 use crate::board::Board;
 use crate::bus;
 use crate::design::{ARMING_TICKS, CALM_TICKS, INSIST_US, LOW_SUPPLY};
+use crate::servos::Limit;
 use handstand_shared::message::{ArmLimits, Refusal};
 
 /// Arming that has begun.
@@ -35,21 +36,21 @@ impl App {
         }
         // Said again, for its answer takes long.
         if let Some(arming) = &mut self.arming
-            && (self.token, arming.limits) == (Some(token), limits)
+            && (self.tokens.now(), arming.limits) == (Token::Used(token), limits)
         {
             arming.answer = answer;
             return Ok(());
         }
-        match self.token {
-            None => return Err(Refusal::Version),
-            Some(right) if right != token || self.is_used => return Err(Refusal::Token),
-            Some(_) => {}
+        match self.tokens.now() {
+            Token::None => return Err(Refusal::Version),
+            Token::Fresh(right) if right == token => {}
+            Token::Fresh(_) | Token::Used(_) => return Err(Refusal::Token),
         }
         if !limits.is_sound() {
             return Err(Refusal::Limits);
         }
         self.may_arm(board)?;
-        self.is_used = true;
+        self.tokens.uses_up();
         self.servos.choose(limits);
         let ticks = 0;
         self.arming = Some(Arming {
@@ -64,13 +65,17 @@ impl App {
     #[inline(never)]
     pub(super) fn write_limits<B: Board>(&mut self, board: &mut B) {
         if let Some(arming) = &mut self.arming {
-            let is_speed = arming.ticks & 1 != 0;
+            let limit = if arming.ticks & 1 == 0 {
+                Limit::Torque
+            } else {
+                Limit::Speed
+            };
             arming.ticks += 1;
             if self.off.us() < INSIST_US {
                 // Torque off was said just before.
                 bus::pause(board);
             }
-            self.servos.write_limits(board, is_speed);
+            self.servos.write_limit(board, limit);
         }
     }
 
@@ -93,12 +98,12 @@ impl App {
         };
         if let Err(refusal) = outcome {
             // What it needs may be there the next time.
-            self.is_used = false;
+            self.tokens.gives_back();
             self.servos.disarm(board);
             return self.abandon_arming(board, refusal);
         }
         self.arming = None;
-        self.switch_on(board, arming.limits);
+        self.switch_on(board, arming.answer);
         self.answer(board, arming.answer, Ok(()));
     }
 
@@ -109,21 +114,19 @@ impl App {
         }
     }
 
-    fn switch_on<B: Board>(&mut self, board: &mut B, limits: ArmLimits) {
-        self.goal = Goal::Hold;
-        self.low = None;
+    fn switch_on<B: Board>(&mut self, board: &mut B, by: u8) {
         self.life = Age::from(board.clock());
-        self.longest_silence_ms = 0;
+        self.longest_silence_us = 0;
         self.off = Age::NEVER;
-        self.limits = limits;
-        if let State::Balance(_) = self.state {
+        let onset = if let State::Balance(_) = self.state {
             // Torque comes on with the law's first command.
-            self.onset = Onset::Balance;
-            self.state = State::Balance(Torque::On);
+            Onset::Balance
         } else {
-            self.onset = Onset::Torque;
             self.servos.hold(board);
-            self.state = State::Stream(Torque::On);
+            Onset::Torque
+        };
+        if let Some(torque) = self.state.torque_mut() {
+            *torque = Torque::On(Armed::by(by, onset));
         }
     }
 
@@ -144,7 +147,7 @@ impl App {
             return Err(Refusal::Busy);
         }
         self.has_supply()?;
-        if self.calm < CALM_TICKS {
+        if self.times.calm < CALM_TICKS {
             return Err(Refusal::Overrun);
         }
         if !self.servos.modes_are_known() {

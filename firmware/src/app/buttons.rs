@@ -4,6 +4,7 @@ use super::{App, State, Torque};
 use crate::board::Board;
 use crate::design::SILENT_US;
 use crate::panel::{button, leds};
+use crate::servos::Servo;
 use handstand_shared::message::Mode;
 
 impl App {
@@ -14,7 +15,7 @@ impl App {
         if pressed != 0 {
             self.press(board, pressed);
         }
-        let all_answer = self.servos.missing() == 0;
+        let all_answer = self.servos.all().iter().all(Servo::is_present);
         let lit = leds(
             self.condition(),
             self.ticks,
@@ -29,14 +30,8 @@ impl App {
     /// arms.
     fn press<B: Board>(&mut self, board: &mut B, pressed: u8) {
         match self.state {
-            State::Stream(Torque::On | Torque::Fading { .. }) => {
-                self.disarm(board);
-                self.state = State::Stream(Torque::Off);
-            }
-            State::Balance(Torque::On | Torque::Fading { .. }) => {
-                self.disarm(board);
-                self.state = State::Balance(Torque::Off);
-            }
+            State::Stream(Torque::On(_) | Torque::Fading(_))
+            | State::Balance(Torque::On(_) | Torque::Fading(_)) => self.disarm(board),
             State::Bridge | State::Stream(Torque::Off) if pressed & button::START != 0 => {
                 self.enter(board, Mode::Balance);
             }

@@ -1,6 +1,6 @@
 //! What each command of the host does.
 
-use super::{App, Goal, State, Torque};
+use super::{App, Goal, State, Token, Torque};
 use crate::board::Board;
 use crate::plan_store::MAX_TABLE;
 use handstand_shared::message::{
@@ -125,9 +125,12 @@ impl App {
         self.link.greet(&mut self.statistics);
         // It was armed with the token of the greeting before.
         self.abandon_arming(board, Refusal::Token);
-        let token = self.new_token(board);
-        self.token = (version == VERSION).then_some(token);
-        self.is_used = false;
+        let token = self.tokens.greet(board.clock());
+        self.tokens.set(if version == VERSION {
+            Token::Fresh(token)
+        } else {
+            Token::None
+        });
         let hello = Hello {
             version: VERSION,
             token,
@@ -138,47 +141,30 @@ impl App {
         Outcome::Quiet
     }
 
-    /// Another one than in the last 255 greetings and the last 255 starts. The first of a start is
-    /// chance, for when a host greets is: should the EEPROM be erased, an old frame still fits with
-    /// 1 in 256 only.
-    fn new_token<B: Board>(&mut self, board: &B) -> u16 {
-        let before = self.greetings.unwrap_or(board.clock() as u8);
-        let greeting = before.wrapping_add(1);
-        self.greetings = Some(greeting);
-        u16::from_le_bytes([greeting, self.boot_count])
-    }
-
     fn stop<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
         self.disarm(board);
-        self.state = match self.state {
-            State::Stream(_) => State::Stream(Torque::Off),
-            State::Balance(_) => State::Balance(Torque::Off),
-            State::Bridge => State::Bridge,
-            State::Fault(cause) => State::Fault(cause),
-        };
         Ok(())
     }
 
     /// As if the line had been lost, but at once. Said again while torque falls it changes nothing.
     #[inline(never)]
     fn let_down<B: Board>(&mut self, board: &mut B) -> Result<(), Refusal> {
-        match self.state {
-            State::Stream(Torque::On) => self.soften(board, Cause::LetDown, State::Stream),
-            State::Balance(Torque::On) => self.soften(board, Cause::LetDown, State::Balance),
-            State::Stream(Torque::Fading { .. }) | State::Balance(Torque::Fading { .. }) => {}
-            _ => return Err(Refusal::State),
+        match self.state.torque() {
+            Some(Torque::On(_)) => self.soften(board, Cause::LetDown),
+            Some(Torque::Fading(_)) => {}
+            Some(Torque::Off) | None => return Err(Refusal::State),
         }
         Ok(())
     }
 
     fn change<B: Board>(&mut self, board: &mut B, mode: Mode) -> Result<(), Refusal> {
-        if self.token.is_none() {
+        // It needs no new greeting; arming does.
+        let token = self.tokens.now();
+        if token == Token::None {
             return Err(Refusal::Version);
         }
-        // It needs no new greeting; arming does.
-        let token = self.token;
         self.enter(board, mode);
-        self.token = token;
+        self.tokens.set(token);
         Ok(())
     }
 
@@ -197,9 +183,9 @@ impl App {
     /// Goals count only while streaming with torque on; before that they keep the link alive and no
     /// more.
     fn set_goal(&mut self, sequence: u8, goal: Goal) -> Outcome {
-        if self.state == State::Stream(Torque::On) {
-            self.goal = goal;
-            self.obeyed = sequence;
+        if let State::Stream(Torque::On(armed)) = &mut self.state {
+            armed.goal = goal;
+            armed.obeyed = sequence;
         }
         Outcome::Quiet
     }
@@ -211,10 +197,10 @@ impl App {
             reset: board.reset_cause(),
             condition: self.condition(),
             ticks: self.ticks,
-            overruns: self.overruns,
-            tick_us: self.tick_us,
-            longest_tick_us: self.longest_tick_us,
-            longest_law_us: self.longest_law_us,
+            overruns: self.times.overruns,
+            tick_us: self.times.last_us,
+            longest_tick_us: self.times.longest_us,
+            longest_law_us: self.times.longest_law_us,
             stack_used,
             stack_size,
             supply: self.servos.supply.map_or(0, |supply| supply.0),
@@ -222,25 +208,24 @@ impl App {
             gyro_zero: self.balance.gyro().zero,
             gyro_scale: self.balance.gyro().scale,
             tripped: self.servos.tripped,
-            longest_silence_ms: self.longest_silence_ms,
+            longest_silence_ms: u16::try_from(self.longest_silence_us / 1000).unwrap_or(u16::MAX),
         };
         if self.link.send(board, &Report::Telemetry(telemetry)) {
-            self.longest_tick_us = 0;
-            self.longest_law_us = 0;
+            self.times.forget_longest();
         }
         Outcome::Quiet
     }
 
     /// The token that armed since the last greeting; none if none has, or torque went off since.
     pub fn used_token(&self) -> Option<u16> {
-        self.token.filter(|_| self.is_used)
+        match self.tokens.now() {
+            Token::Used(token) => Some(token),
+            Token::Fresh(_) | Token::None => None,
+        }
     }
 
     /// Whether torque is on, falling included.
     pub fn is_armed(&self) -> bool {
-        match self.state {
-            State::Stream(drive) | State::Balance(drive) => drive != Torque::Off,
-            State::Bridge | State::Fault(_) => false,
-        }
+        self.state.is_armed()
     }
 }

@@ -11,7 +11,7 @@ impl App {
         // What the host asked for is no fault.
         if cause != Cause::LetDown {
             self.faults.keep(&FaultEntry {
-                start: self.boot_count,
+                start: self.tokens.start(),
                 tick: self.ticks,
                 cause,
                 condition: self.condition(),

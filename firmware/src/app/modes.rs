@@ -1,10 +1,9 @@
 //! What a tick does in each state.
 
-use super::{App, Goal, Onset, State};
+use super::{App, Goal, Onset};
 use crate::balance::Stop;
 use crate::board::{Board, since_us};
 use crate::bus;
-use crate::design::TICK_US;
 use handstand_shared::message::{Cause, Report, StreamReport};
 
 impl App {
@@ -38,19 +37,19 @@ impl App {
     #[inline(never)]
     pub(super) fn stream<B: Board>(&mut self, board: &mut B, started: u16) {
         if let Some(cause) = self.must_stop(started) {
-            self.soften(board, cause, State::Stream);
-            return self.watch(board, started);
-        }
-        if self.onset == Onset::Torque {
-            // Goals were sent after the last tick: long enough ago for servos to obey both.
-            self.servos.switch_on(board);
-            self.onset = Onset::Done;
-            return self.watch(board, started);
-        }
-        match self.goal {
-            Goal::Hold => {}
-            Goal::Positions(goals) => self.servos.go_to(board, &goals),
-            Goal::Speeds(speeds) => self.servos.spin(board, &speeds),
+            self.soften(board, cause);
+        } else if let Some(armed) = self.state.armed_mut() {
+            if armed.onset == Onset::Torque {
+                // Goals were sent after the last tick: long enough ago for servos to obey both.
+                self.servos.switch_on(board);
+                armed.onset = Onset::Done;
+            } else {
+                match &armed.goal {
+                    Goal::Hold => {}
+                    Goal::Positions(goals) => self.servos.go_to(board, goals),
+                    Goal::Speeds(speeds) => self.servos.spin(board, speeds),
+                }
+            }
         }
         self.watch(board, started);
     }
@@ -59,19 +58,23 @@ impl App {
     #[inline(never)]
     pub(super) fn balance<B: Board>(&mut self, board: &mut B, started: u16) {
         if let Some(cause) = self.must_stop(started) {
-            self.soften(board, cause, State::Balance);
+            self.soften(board, cause);
             return self.watch(board, started);
         }
         self.read(board, started);
+        let mut commanded = board.clock();
         match self.servos.gave_up() {
             None if self.has_attitude(board) && self.balance.has_gyro(self.gyro) => {
                 self.command(board);
+                commanded = board.clock();
             }
-            None => self.soften(board, Cause::AttitudeLost, State::Balance),
+            None => self.soften(board, Cause::AttitudeLost),
             // It leaves the other ones to throw the robot: not one command more.
-            Some(cause) => self.soften(board, cause, State::Balance),
+            Some(cause) => self.soften(board, cause),
         }
+        // While commands go out.
         self.report(board);
+        self.come_on(board, commanded);
     }
 
     /// The law's commands at these readings.
@@ -87,60 +90,68 @@ impl App {
             Err(Stop::JointSpeed) => return self.give_up(board, Cause::JointSpeed),
             Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
         };
-        let is_first = self.onset == Onset::Balance;
-        if is_first {
+        let Some(armed) = self.state.armed_mut() else {
+            return;
+        };
+        if armed.onset == Onset::Balance {
             // It was held until now: the estimate begins here, and not where it was armed.
             self.balance.begin(&readings);
         }
         let commands = self.balance.commands(&readings);
         let law_us = since_us(board, law_started);
-        self.longest_law_us = self.longest_law_us.max(law_us);
+        self.times.longest_law_us = self.times.longest_law_us.max(law_us);
         self.servos.turn(board, commands);
+        self.balance.begin_update();
+    }
+
+    /// Torque comes on by another step, behind the commands handed over at this reading of the
+    /// clock.
+    #[inline(never)]
+    fn come_on<B: Board>(&mut self, board: &mut B, commanded: u16) {
+        let Some(armed) = self.state.armed_mut() else {
+            return;
+        };
+        if armed.onset == Onset::Done {
+            return;
+        }
+        bus::pause_since(board, commanded);
         let balancing = self.balance.servos();
-        match self.onset {
+        match armed.onset {
             // With the first command, not before: without one the robot would fall.
             Onset::Balance => {
-                self.servos.switch_on_only(board, balancing);
-                self.onset = Onset::Goals(0);
+                self.servos.switch_on_these(board, balancing);
+                armed.onset = Onset::Goals(0);
             }
             Onset::Goals(from) => {
                 let next = self.servos.hold_half(board, from, balancing);
-                self.onset = next.map_or(Onset::Others(0), Onset::Goals);
+                armed.onset = next.map_or(Onset::Others(0), Onset::Goals);
             }
             Onset::Others(from) => {
                 let next = self.servos.switch_on_half(board, from);
-                self.onset = next.map_or(Onset::Done, Onset::Others);
+                armed.onset = next.map_or(Onset::Done, Onset::Others);
             }
             Onset::Torque | Onset::Done => {}
         }
-        self.balance.begin_update();
     }
 
     #[inline(never)]
     fn report<B: Board>(&mut self, board: &mut B) {
-        let [m0, m1, m2, _] = self.servos.missing().to_le_bytes();
-        let report = StreamReport {
+        let report = Report::Stream(StreamReport {
             tick: self.ticks as u16,
             condition: self.condition(),
-            obeyed: self.obeyed,
+            obeyed: self.state.obeyed(),
             positions: self.servos.positions,
-            missing: [m0, m1, m2],
+            missing: self.servos.missing(),
             housekeeping_from: self.servos.housekeeping_from,
             housekeeping: self.servos.housekeeping,
             gyro: self.gyro,
-        };
-        self.link.send(board, &Report::Stream(report));
+        });
+        self.link.send(board, &report);
     }
 
     /// What the tick took since it was due, and what it lost.
     pub(super) fn account<B: Board>(&mut self, board: &mut B, due: u16) {
-        self.tick_us = since_us(board, due);
-        self.longest_tick_us = self.longest_tick_us.max(self.tick_us);
-        self.calm = self.calm.saturating_add(1);
-        if self.tick_us > TICK_US {
-            self.overruns = self.overruns.saturating_add(1);
-            self.calm = 0;
-        }
+        self.times.end(board, due);
         let lost = u16::from(board.link_overruns());
         self.statistics.overruns = self.statistics.overruns.saturating_add(lost);
     }

@@ -1,6 +1,6 @@
 //! How torque goes off, and when it must.
 
-use super::{App, Goal, Onset, State, Torque};
+use super::{App, Fading, Onset, State, Token, Torque};
 use crate::age::Age;
 use crate::board::Board;
 use crate::design::{ATTITUDE_US, FADE_US, LOW_SUPPLY, LOW_SUPPLY_US, SILENT_US, TICK_US};
@@ -11,13 +11,14 @@ use handstand_shared::raw::TorqueLimit;
 impl App {
     /// Whether an armed robot must be let down.
     pub(super) fn must_stop(&mut self, clock: u16) -> Option<Cause> {
+        let armed = self.state.armed_mut()?;
         let is_low = self.servos.supply.is_none_or(|supply| supply < LOW_SUPPLY);
-        self.low = is_low.then(|| self.low.unwrap_or(Age::from(clock)));
+        armed.low = is_low.then(|| armed.low.unwrap_or(Age::from(clock)));
         if let Some(cause) = self.servos.gave_up() {
             Some(cause)
         } else if self.life.us() >= SILENT_US {
             Some(Cause::LinkLost)
-        } else if self.low.is_some_and(|low| low.us() >= LOW_SUPPLY_US) {
+        } else if armed.low.is_some_and(|low| low.us() >= LOW_SUPPLY_US) {
             Some(Cause::LowSupply)
         } else {
             None
@@ -32,16 +33,15 @@ impl App {
 
     /// Holds the positions and begins to fade.
     #[inline(never)]
-    pub(super) fn soften<B: Board>(
-        &mut self,
-        board: &mut B,
-        cause: Cause,
-        within: fn(Torque) -> State,
-    ) {
-        if self.onset == Onset::Balance {
+    pub(super) fn soften<B: Board>(&mut self, board: &mut B, cause: Cause) {
+        let Some(armed) = self.state.armed_mut() else {
+            return;
+        };
+        if armed.onset == Onset::Balance {
             // No servo has torque yet: soft would say that it has.
             return self.give_up(board, cause);
         }
+        let obeyed = armed.obeyed;
         self.log_fault(cause);
         if self.servos.tripped.is_some() {
             self.servos.release(board);
@@ -52,30 +52,35 @@ impl App {
         if matches!(self.state, State::Stream(_)) {
             self.servos.hold(board);
         }
-        self.fading = Age::from(board.clock());
-        self.fade(board, cause, within);
+        let fading = Fading {
+            cause,
+            since: Age::from(board.clock()),
+            from: self.servos.torque_limit(),
+            obeyed,
+        };
+        if let Some(torque) = self.state.torque_mut() {
+            *torque = Torque::Fading(fading);
+        }
+        self.fade(board);
     }
 
     /// Lowers every servo's torque limit as time passes; at none, torque goes off.
     #[inline(never)]
-    pub(super) fn fade<B: Board>(
-        &mut self,
-        board: &mut B,
-        cause: Cause,
-        within: fn(Torque) -> State,
-    ) {
+    pub(super) fn fade<B: Board>(&mut self, board: &mut B) {
+        let Some(Torque::Fading(fading)) = self.state.torque() else {
+            return;
+        };
         // 1/16 of the time is the least that counts; it stays within 16 bits, 1023 * 16.
         const SIXTEENTH_US: u32 = FADE_US / 16;
-        let faded_us = self.fading.us();
+        let (cause, faded_us) = (fading.cause, fading.since.us());
         if faded_us >= FADE_US {
             return self.give_up(board, cause);
         }
         // The limit that the period ends with, so that it falls from the first one on.
         let left_us = FADE_US.saturating_sub(faded_us + u32::from(TICK_US));
         let sixteenths = (left_us / SIXTEENTH_US) as u16;
-        let limit = self.limits.torque.0 / 16 * sixteenths;
+        let limit = fading.from.0 / 16 * sixteenths;
         self.servos.lower_limit(board, TorqueLimit(limit));
-        self.state = within(Torque::Fading { cause });
     }
 
     /// Torque off at once.
@@ -93,9 +98,10 @@ impl App {
         self.servos.disarm(board);
         self.abandon_arming(board, Refusal::State);
         self.off = Age::from(board.clock());
-        self.onset = Onset::Done;
-        self.token = None;
-        self.goal = Goal::Hold;
+        self.tokens.set(Token::None);
+        if let Some(torque) = self.state.torque_mut() {
+            *torque = Torque::Off;
+        }
     }
 
     /// Changes the mode; torque is off on the way.
@@ -105,7 +111,7 @@ impl App {
         // An adapter's user may have changed them.
         self.servos.ask_again();
         self.balance.forget_rest();
-        if self.state == State::Bridge {
+        if matches!(self.state, State::Bridge) {
             self.servos.forget_supply();
         }
         self.state = match mode {

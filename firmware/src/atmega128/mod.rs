@@ -1,5 +1,6 @@
 //! The CM-5's ATmega128: every register it writes. Unsafe code is here, in the law's assembly
-//! (`shared/src/law/avr.rs`) and in the program that tests it, and nowhere else.
+//! (`shared/src/law/avr.rs`) and the program that tests it, and in the table in flash of
+//! `shared/src/crc/flash.rs`, and nowhere else.
 //!
 //! A module per peripheral. Pins are embedded-hal's and the PC line is embedded-io's; for ADC,
 //! EEPROM and watchdog embedded-hal 1.0 has no traits, and nothing here waits for a time, so there
@@ -166,7 +167,7 @@ impl Board for Cm5 {
         self.reset_cause
     }
 
-    fn stack(&self) -> (u16, u16) {
+    fn stack(&mut self) -> (u16, u16) {
         stack::used_and_size()
     }
 }

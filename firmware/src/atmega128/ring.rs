@@ -82,6 +82,27 @@ impl<const N: usize> Ring<N> {
         self.head.set(next);
     }
 
+    /// Adds as many bytes as find room; how many. For the producer only. Quicker than one by one: no
+    /// other moves `head`.
+    #[inline(always)]
+    pub fn push_all(&self, bytes: &[u8]) -> usize {
+        let count = bytes.len().min(self.room());
+        let mut head = self.head.get();
+        for byte in bytes.iter().take(count) {
+            // SAFETY: `head` is below N, and there is room for these: the consumer does not read
+            // their slots before `head` moves.
+            unsafe {
+                (self.bytes.get() as *mut u8)
+                    .add(usize::from(head))
+                    .write_volatile(*byte)
+            };
+            head = head.wrapping_add(1) & Self::MASK;
+        }
+        compiler_fence(Ordering::Release);
+        self.head.set(head);
+        count
+    }
+
     /// Takes the oldest byte. For the consumer only.
     #[inline(always)]
     pub fn pop(&self) -> Option<u8> {

@@ -98,6 +98,8 @@ mod program {
                         let applied = (&raw const (*mailbox).applied).read_volatile();
                         let mut memory = Memory::of(all);
                         let law = black_box(&observer);
+                        // Done while servos are awaited.
+                        while law.step_update(&mut memory) {}
                         mark(&port, 1);
                         let u = black_box(law.raw_command(&mut memory, &readings));
                         mark(&port, 2);

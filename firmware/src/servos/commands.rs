@@ -2,21 +2,17 @@
 
 use super::mode::ServoMode;
 use super::registers::Registers;
-use super::{Servo, Servos};
+use super::{Driven, Servo, Servos};
 use crate::board::Board;
 use crate::bus;
 use crate::design::GOAL_SLEW;
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, Register, TORQUE_ENABLE, TORQUE_LIMIT,
 };
-use handstand_shared::dynamixel::BROADCAST;
 use handstand_shared::message::ArmLimits;
 use handstand_shared::packed::{Positions, SERVOS, Speeds};
 use handstand_shared::raw::{Position, Signed, TorqueLimit};
 use heapless::Vec;
-
-/// Ids that no servo has.
-const NO_SERVO: [u8; 4] = [BROADCAST; 4];
 
 /// The servo list from its first place on.
 const ALL: Part = Part {
@@ -31,6 +27,33 @@ struct Part {
     places: u8,
 }
 
+/// Which servos of a part are written to, of those that take goals.
+#[derive(Debug, Clone, Copy)]
+enum Whom {
+    All,
+    Only(Driven),
+    AllBut(Driven),
+}
+
+impl Whom {
+    fn has(&self, id: u8) -> bool {
+        match self {
+            Whom::All => true,
+            Whom::Only(driven) => driven.ids().contains(&id),
+            Whom::AllBut(driven) => !driven.ids().contains(&id),
+        }
+    }
+}
+
+/// Which of the limits is written in a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// The torque limit, of all servos.
+    Torque,
+    /// The moving speed, of those that are commanded.
+    Speed,
+}
+
 /// What a servo is sent. Apart from its register, whose name the AVR would hold in RAM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Sent {
@@ -40,7 +63,7 @@ enum Sent {
 
 impl Servos {
     /// Those that answered lately are commanded from now on, within these limits, which
-    /// [`Servos::write_limits`] writes, and their goal is where they stand. Torque stays as it is.
+    /// [`Servos::write_limit`] writes, and their goal is where they stand. Torque stays as it is.
     pub fn choose(&mut self, limits: ArmLimits) {
         self.tripped = None;
         self.has_torque = false;
@@ -53,17 +76,23 @@ impl Servos {
 
     /// Writes the torque limit, or the moving speeds: one of them a tick, for servos ignore a write
     /// that comes right behind another.
-    pub fn write_limits<B: Board>(&self, board: &mut B, is_speed: bool) {
-        if is_speed {
-            let limits = self.limits;
-            let is_meant = |servo: &Servo| servo.armed;
-            self.write_each(board, MOVING_SPEED, is_meant, |servo| {
-                // None has an unknown mode: it would not be armed.
-                servo.mode.moving_speed(limits).unwrap_or(limits.speed.0)
-            });
-        } else {
-            bus::write_all(board, TORQUE_LIMIT, self.limits.torque.0);
+    pub fn write_limit<B: Board>(&self, board: &mut B, limit: Limit) {
+        match limit {
+            Limit::Torque => bus::write_all(board, TORQUE_LIMIT, self.limits.torque.0),
+            Limit::Speed => {
+                let limits = self.limits;
+                let is_meant = |servo: &Servo| servo.armed;
+                self.write_each(board, MOVING_SPEED, is_meant, |servo| {
+                    // None has an unknown mode: it would not be armed.
+                    servo.mode.moving_speed(limits).unwrap_or(limits.speed.0)
+                });
+            }
         }
+    }
+
+    /// The torque limit that those that are commanded were written last.
+    pub fn torque_limit(&self) -> TorqueLimit {
+        self.limits.torque
     }
 
     /// Whether all that are commanded have said that their limits are those they were written.
@@ -93,7 +122,7 @@ impl Servos {
 
     /// Torque on in all that are commanded.
     pub fn switch_on<B: Board>(&mut self, board: &mut B) {
-        self.write_to(board, Sent::TorqueOn, ALL, false, NO_SERVO);
+        self.write_to(board, Sent::TorqueOn, ALL, Whom::All);
         self.has_torque = true;
         for servo in self.all_mut() {
             servo.registers = Registers::Unread;
@@ -104,27 +133,26 @@ impl Servos {
     /// place to go on from; none at the end of the list.
     pub fn switch_on_half<B: Board>(&mut self, board: &mut B, from: u8) -> Option<u8> {
         let (half, next) = self.half(from);
-        self.write_to(board, Sent::TorqueOn, half, false, NO_SERVO);
+        self.write_to(board, Sent::TorqueOn, half, Whom::All);
         self.has_torque = next.is_none();
         next
     }
 
-    /// Torque on in those of these servos that are commanded, right behind their first command.
-    pub fn switch_on_only<B: Board>(&self, board: &mut B, ids: [u8; 4]) {
-        bus::pause(board);
-        self.write_to(board, Sent::TorqueOn, ALL, true, ids);
+    /// Torque on in those of these servos that are commanded.
+    pub fn switch_on_these<B: Board>(&self, board: &mut B, driven: Driven) {
+        self.write_to(board, Sent::TorqueOn, ALL, Whom::Only(driven));
     }
 
     /// Has all that are commanded stay where they stand now.
     pub fn hold<B: Board>(&mut self, board: &mut B) {
-        self.hold_but(board, ALL, NO_SERVO);
+        self.hold_those(board, ALL, Whom::All);
     }
 
     /// Has those that are commanded but these stay where they stand now, in half of the servo list,
     /// from this place on. The place to go on from; none at the end of the list.
-    pub fn hold_half<B: Board>(&mut self, board: &mut B, from: u8, but: [u8; 4]) -> Option<u8> {
+    pub fn hold_half<B: Board>(&mut self, board: &mut B, from: u8, but: Driven) -> Option<u8> {
         let (half, next) = self.half(from);
-        self.hold_but(board, half, but);
+        self.hold_those(board, half, Whom::AllBut(but));
         next
     }
 
@@ -136,38 +164,35 @@ impl Servos {
     }
 
     #[inline(never)]
-    fn hold_but<B: Board>(&mut self, board: &mut B, part: Part, ids: [u8; 4]) {
+    fn hold_those<B: Board>(&mut self, board: &mut B, part: Part, whom: Whom) {
         let all = self.all_mut().iter_mut().skip(part.from.into());
         for servo in all.take(part.places.into()) {
             servo.goal = servo.position;
         }
-        self.write_to(board, Sent::Goal, part, false, ids);
+        self.write_to(board, Sent::Goal, part, whom);
     }
 
-    /// Writes to each servo of a part that is commanded and is one of these ids, or none of them.
+    /// Writes to each of these servos of a part that takes goals.
     // One function for all, for it is long.
     #[inline(never)]
-    fn write_to<B: Board>(
-        &self,
-        board: &mut B,
-        sent: Sent,
-        part: Part,
-        is_one: bool,
-        ids: [u8; 4],
-    ) {
+    fn write_to<B: Board>(&self, board: &mut B, sent: Sent, part: Part, whom: Whom) {
         let is_goal = sent == Sent::Goal;
         let all = self.all().iter().skip(part.from.into());
         let all = all.take(part.places.into());
-        let is_meant = |servo: &&Servo| servo.takes_goals() && ids.contains(&servo.id) == is_one;
         let value = |servo: &Servo| if is_goal { servo.goal.0 } else { 1 };
-        let count = all.clone().filter(is_meant).count() as u8;
-        let values = all.filter(is_meant).map(|servo| (servo.id, value(servo)));
+        // Their number goes out first; looking for them takes longer than keeping them.
+        let mut meant: Vec<(u8, u16), SERVOS, u8> = Vec::new();
+        for servo in all.filter(|servo| servo.takes_goals() && whom.has(servo.id)) {
+            // There is room for every servo.
+            let _ = meant.push((servo.id, value(servo)));
+        }
         let register = if is_goal {
             GOAL_POSITION
         } else {
             TORQUE_ENABLE
         };
-        bus::write_each(board, register, count, values);
+        let count = meant.len() as u8;
+        bus::write_each(board, register, count, meant.iter().copied());
     }
 
     /// Torque off everywhere.
@@ -222,19 +247,16 @@ impl Servos {
     }
 
     /// Sends commands to servos in wheel mode, each given with its id.
-    pub fn turn<B: Board>(&self, board: &mut B, commands: impl Iterator<Item = (u8, Signed)>) {
-        let armed = |id: u8| self.with_id(id).is_some_and(|servo| servo.armed);
-        let mut known: Vec<(u8, u16), SERVOS, u8> = Vec::new();
-        for (id, code) in commands.filter(|(id, _)| armed(*id)).take(SERVOS) {
-            // There is room for as many as are taken.
-            let _ = known.push((id, code.0));
+    pub fn turn<B: Board>(&self, board: &mut B, mut commands: [Option<(u8, Signed)>; 4]) {
+        let mut count = 0;
+        for slot in &mut commands {
+            let is_armed = |id: u8| self.with_id(id).is_some_and(|servo| servo.armed);
+            *slot = slot.filter(|(id, _)| is_armed(*id));
+            count += u8::from(slot.is_some());
         }
-        bus::write_each(
-            board,
-            MOVING_SPEED,
-            known.len() as u8,
-            known.iter().copied(),
-        );
+        let commands = commands.iter().flatten();
+        let codes = commands.map(|(id, code)| (*id, code.0));
+        bus::write_each(board, MOVING_SPEED, count, codes);
     }
 
     /// How many are commanded.

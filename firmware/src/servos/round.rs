@@ -16,15 +16,11 @@ use heapless::Vec;
 /// Bytes from the position on that hold the housekeeping too.
 const ALL_CHANNELS: u8 = 8;
 
-/// Bytes from torque enable on that hold all of these: one servo a tick is asked for them, for
-/// twelve bytes more of each would take a fiftieth of the period.
+/// Bytes from torque enable on that hold all of these: one servo a tick is asked for them, and one
+/// more while some must be read: 12 to 18 bytes more of each take up to a fiftieth of the period.
 const WITH_TORQUE: u8 = bus::MOST_READ as u8;
 const _: () =
     assert!(TORQUE_ENABLE.address + WITH_TORQUE == PRESENT_POSITION.address + ALL_CHANNELS);
-
-/// Servos whose registers are read in one tick beside that one's: 12 bytes more of each take 240
-/// us, so that 18 are read in nine ticks.
-const MOST_UNREAD: u8 = 2;
 
 /// Bytes from the return delay on that hold both angle limits too: 0 in a servo that turns without
 /// end.
@@ -139,29 +135,38 @@ impl Servos {
     /// Whether its registers are read in this tick, torque and goal among them. Not if it was not
     /// heard in the last one: long answers of two servos of one id spoil their neighbour's.
     fn is_read_whole(&self, place: u8) -> bool {
-        let servo = self.all().get(usize::from(place));
-        servo.is_some_and(|servo| servo.is_present() && servo.is_read_whole)
+        let is_chosen = [self.whole_in_turn, self.whole_unread].contains(&Some(place));
+        is_chosen && self.is_present(place)
     }
 
-    /// Chooses whose registers are read in this tick: each in turn, over two rounds, and some of
-    /// those that must be read.
+    /// Chooses whose registers are read in this tick: one of those that must be read, the first from
+    /// the housekeeping's on; and each in turn, over two rounds, while there are such, or torque is
+    /// on.
     #[inline(never)]
     fn choose_whole(&mut self) {
-        let turn = usize::from(self.rounds & 1);
-        let mut left = MOST_UNREAD;
-        let mut place = self.housekeeping_from;
-        for _ in 0..self.count {
-            let is_in_turn = self.turn_of(place);
-            let is_in_turn = is_in_turn.is_some_and(|own| own == turn || self.count == 1);
-            if let Some(servo) = self.servos.get_mut(usize::from(place)) {
-                let is_unread = servo.armed && servo.registers != Registers::AsWritten;
-                servo.is_read_whole = is_in_turn || (is_unread && servo.is_present() && left > 0);
-                if servo.is_read_whole && !is_in_turn {
-                    left -= 1;
-                }
+        let from = self.housekeeping_from;
+        let is_second = self.rounds & 1 != 0 && self.count > 1;
+        let in_turn = if is_second {
+            self.housekeeping_second
+        } else {
+            from
+        };
+        let is_unread = |servo: &Servo| {
+            servo.registers != Registers::AsWritten && servo.armed && servo.is_present()
+        };
+        let places = (0..).zip(self.all());
+        let unread = places.filter(|(_, servo)| is_unread(servo));
+        let mut is_due = self.has_torque;
+        let (mut first, mut next) = (None, None);
+        for (place, _) in unread {
+            is_due = true;
+            let slot = if place < from { &mut first } else { &mut next };
+            if place != in_turn && slot.is_none() {
+                *slot = Some(place);
             }
-            place = self.after(place);
         }
+        self.whole_unread = next.or(first);
+        self.whole_in_turn = is_due.then_some(in_turn);
     }
 
     fn bytes_of(&self, place: u8) -> u8 {
@@ -260,21 +265,19 @@ impl Servos {
     /// Asks one servo per tick for its return delay and mode, until each that is there has said
     /// them.
     fn ask_mode<B: Board>(&mut self, board: &mut B, statistics: &mut Statistics) {
-        let is_asked = |servo: &Servo| servo.is_present() && servo.mode == ServoMode::Unknown;
-        let mut place = self.asked;
-        for _ in 0..self.count {
-            place = self.after(place);
-            if self.all().get(usize::from(place)).is_some_and(is_asked) {
-                break;
-            }
-        }
+        let asked = self.asked;
+        let places = (0..).zip(self.all());
+        let mut unknown = places
+            .filter(|(_, servo)| servo.mode == ServoMode::Unknown && servo.is_present())
+            .map(|(place, _)| place);
+        let Some(first) = unknown.next() else { return };
+        let is_behind = first <= asked;
+        let next = unknown.find(|place| is_behind && *place > asked);
+        let place = next.unwrap_or(first);
         self.asked = place;
         let Some(servo) = self.all_mut().get_mut(usize::from(place)) else {
             return;
         };
-        if !is_asked(servo) {
-            return;
-        }
         let mut answer = Answer::default();
         let request = read_packet(servo.id, RETURN_DELAY.address, MODE);
         bus::ask(board, &request);

@@ -5,10 +5,10 @@ use super::collision::{Sent, received};
 use super::robot::Robot;
 use super::servo::Servo;
 use super::x_line::XLine;
-use handstand_shared::control_table::TORQUE_ENABLE;
+use handstand_shared::control_table::{Register, TORQUE_ENABLE};
 use handstand_shared::dynamixel::timing::{BYTE_NS, PING_REPLY_NS, REPLY_NS, byte_start_ns};
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 /// Servos on one line.
 #[derive(Debug)]
@@ -20,10 +20,14 @@ pub struct Bus {
     robot: Option<Robot>,
     parser: Box<Parser<MAX_PACKET>>,
     bad_checksum: BadChecksum,
+    /// Ends of the last bytes of the controller, ns, the newest last.
+    heard_ns: VecDeque<u64>,
     line: VecDeque<(u64, u8)>,
     now_ns: u64,
     /// Ends of the broadcasts that switched torque off, ns: what a safety test looks for.
     pub torque_offs: Vec<u64>,
+    /// End of the last packet to more than one servo that wrote to each address, ns.
+    written_ns: BTreeMap<u8, u64>,
     /// Speed of the controller, baud; servos set to another speed do not understand it.
     pub line_baud: u32,
     /// Time from one byte of noise to the next, ns, if there is noise.
@@ -48,9 +52,11 @@ impl Bus {
             robot: None,
             parser: Box::default(),
             bad_checksum: BadChecksum::default(),
+            heard_ns: VecDeque::new(),
             line: VecDeque::new(),
             now_ns: 0,
             torque_offs: Vec::new(),
+            written_ns: BTreeMap::new(),
             line_baud: 1_000_000,
             noise_ns: None,
             next_noise_ns: 0,
@@ -107,6 +113,10 @@ impl Bus {
     /// Receive a byte from the controller, whose stop bit ended at `now_ns`.
     pub fn receive(&mut self, now_ns: u64, byte: u8) {
         self.advance(now_ns);
+        self.heard_ns.push_back(now_ns);
+        if self.heard_ns.len() > MAX_PACKET {
+            self.heard_ns.pop_front();
+        }
         let byte = self.collided(now_ns, byte);
         let mut faults = (self.servos.iter().map(|servo| &servo.faults))
             .chain(self.x.servos.iter().map(|servo| &servo.faults));
@@ -124,9 +134,16 @@ impl Bus {
             return;
         };
         let id = packet.id();
-        let began_ns = now_ns.saturating_sub(packet.bytes().len() as u64 * BYTE_NS);
+        let first = self.heard_ns.len().saturating_sub(packet.bytes().len());
+        let first_ns = self.heard_ns.get(first).copied().unwrap_or(now_ns);
+        let began_ns = first_ns.saturating_sub(BYTE_NS);
         if is_torque_off(id, request) {
             self.torque_offs.push(now_ns);
+        }
+        if id == BROADCAST
+            && let Request::Write { address, .. } | Request::SyncWrite { address, .. } = request
+        {
+            self.written_ns.insert(address, now_ns);
         }
         let wait_ns = match request {
             Request::Ping => PING_REPLY_NS,
@@ -194,6 +211,11 @@ impl Bus {
         {
             self.next_noise_ns += ((now_ns - self.next_noise_ns) / every_ns + 1) * every_ns;
         }
+    }
+
+    /// When this register was last written to in a packet to more than one servo, ns.
+    pub fn last_write_ns(&self, register: Register) -> Option<u64> {
+        self.written_ns.get(&register.address).copied()
     }
 
     /// Whether any servo's torque is on.

@@ -14,6 +14,8 @@ use std::collections::VecDeque;
 const TICK_NS: u64 = TICK_US as u64 * 1000;
 /// A byte of 8N1 on the PC line, ns.
 const LINK_BYTE_NS: u64 = 10_000_000_000 / LINK_BAUD as u64;
+/// The chip's queue from the PC, bytes.
+const WAITING: usize = 127;
 /// The chip's queue towards the PC, bytes.
 const ROOM: usize = 255;
 const EEPROM_BYTE_NS: u64 = 8_500_000;
@@ -29,6 +31,9 @@ pub struct HostBoard {
     pub bus: Bus,
     /// Bytes on a line, each with the moment its stop bit ends.
     from_pc: VecDeque<(u64, u8)>,
+    /// Those that have arrived and were not taken, and those that found no room.
+    waiting: VecDeque<u8>,
+    lost: u8,
     to_pc: VecDeque<(u64, u8)>,
     /// When the line to the PC is free.
     free_ns: u64,
@@ -38,6 +43,10 @@ pub struct HostBoard {
     pub leds: u8,
     /// Time that the program takes for a byte from the PC, ns: none, unless a test is about it.
     pub byte_ns: u64,
+    /// The same for a byte of EEPROM that is read, ns.
+    pub eeprom_read_ns: u64,
+    /// The same for a look at how deep the stack was, ns.
+    pub stack_ns: u64,
     /// ADC code of the gyro, 0..=1023, used where no robot is attached.
     pub gyro: u16,
     /// The plan compiled into the program.
@@ -71,11 +80,15 @@ impl HostBoard {
             next_tick_ns: now_ns + TICK_NS,
             bus,
             from_pc: VecDeque::new(),
+            waiting: VecDeque::new(),
+            lost: 0,
             to_pc: VecDeque::new(),
             free_ns: 0,
             buttons: 0,
             leds: 0,
             byte_ns: 0,
+            eeprom_read_ns: 0,
+            stack_ns: 0,
             gyro: GYRO_AT_REST,
             compiled: Vec::new(),
             eeprom: vec![0xff; EEPROM_SIZE],
@@ -87,6 +100,14 @@ impl HostBoard {
             fed_ns: now_ns,
             longest_unfed_ns: 0,
         }
+    }
+
+    /// Commands take as long as on the chip, where simavr measured them: 10 us for a byte from the
+    /// PC, 8.8 ms to read the 1200 bytes of a plan, 1.4 ms to look at the stack.
+    pub fn take_time(&mut self) {
+        self.byte_ns = 10_000;
+        self.eeprom_read_ns = 7_300;
+        self.stack_ns = 1_400_000;
     }
 
     /// Since power came, ns.
@@ -122,8 +143,8 @@ impl HostBoard {
             if self.now_ns >= until_ns || (until_byte && has_arrived) {
                 return;
             }
-            if self.now_ns >= self.next_tick_ns {
-                // A tick was longer than its period: the next one begins at once.
+            if self.now_ns >= self.next_tick_ns || !self.waiting.is_empty() {
+                // A tick was longer than its period, or a command took long: it goes on at once.
                 continue;
             }
             let next = [
@@ -192,14 +213,23 @@ impl Board for HostBoard {
     }
 
     fn link_receive(&mut self) -> Option<u8> {
-        let (ends, byte) = self.from_pc.front().copied()?;
-        (ends <= self.now_ns).then(|| self.from_pc.pop_front())?;
+        while let Some((ends, byte)) = self.from_pc.front().copied()
+            && ends <= self.now_ns
+        {
+            self.from_pc.pop_front();
+            if self.waiting.len() < WAITING {
+                self.waiting.push_back(byte);
+            } else {
+                self.lost = self.lost.saturating_add(1);
+            }
+        }
+        let byte = self.waiting.pop_front()?;
         self.now_ns += self.byte_ns;
         Some(byte)
     }
 
     fn link_overruns(&mut self) -> u8 {
-        0
+        std::mem::take(&mut self.lost)
     }
 
     fn link_room(&self) -> usize {
@@ -232,7 +262,7 @@ impl Board for HostBoard {
     }
 
     fn eeprom_read(&mut self, address: u16) -> u8 {
-        self.now_ns = self.now_ns.max(self.eeprom_ready_ns);
+        self.now_ns = self.now_ns.max(self.eeprom_ready_ns) + self.eeprom_read_ns;
         let byte = self.eeprom.get(usize::from(address));
         byte.copied().unwrap_or(0xff)
     }
@@ -265,7 +295,8 @@ impl Board for HostBoard {
         self.reset_cause
     }
 
-    fn stack(&self) -> (u16, u16) {
+    fn stack(&mut self) -> (u16, u16) {
+        self.now_ns += self.stack_ns;
         (0, 0)
     }
 }

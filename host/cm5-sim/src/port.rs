@@ -5,6 +5,7 @@ use super::bus::Bus;
 use super::cm5::{SimulatedCm5 as _, VirtualCm5};
 use super::host_board::HostBoard;
 use handstand_firmware::design::LINK_BAUD;
+use handstand_shared::message::ResetCause;
 use std::time::Duration;
 
 /// The serial port of a simulated device.
@@ -50,6 +51,12 @@ impl Cm5Port {
             cm5,
             baud: LINK_BAUD,
         }
+    }
+
+    /// What the firmware is told from now on of why it started, as by a boot loader that leaves
+    /// other flags.
+    pub fn set_reset_cause(&mut self, flags: u8) {
+        self.cm5.board.reset_cause = ResetCause(flags);
     }
 
     fn run(&mut self, time: Duration, until_byte: bool) {

@@ -35,6 +35,7 @@ pub struct BusSpec {
     overload: Vec<u8>,
     jam: Vec<u8>,
     corrupt_request: f64,
+    write_us: f64,
     supply_v: Option<f64>,
     seed: u64,
 }
@@ -94,6 +95,7 @@ impl Default for BusSpec {
             overload: Vec::new(),
             jam: Vec::new(),
             corrupt_request: 0.0,
+            write_us: 0.0,
             supply_v: None,
             seed: 1,
         }
@@ -136,6 +138,7 @@ impl BusSpec {
         faults.late = self.late;
         faults.wrong_id = self.wrong_id;
         faults.corrupt_request = self.corrupt_request;
+        faults.write_ns = (self.write_us * 1e3) as u64;
         faults.echo = self.echo;
         faults
     }
@@ -180,6 +183,7 @@ impl BusSpec {
             "late" => self.late = number(1.0)?,
             "wrong_id" => self.wrong_id = number(1.0)?,
             "corrupt_request" => self.corrupt_request = number(1.0)?,
+            "write_us" => self.write_us = number(10_000.0)?,
             "echo" => self.echo = true,
             "dead" => self.dead = id_list(value)?,
             "hot" => self.hot = id_list(value)?,

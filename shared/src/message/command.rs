@@ -104,18 +104,19 @@ impl ArmLimits {
     /// As much as a servo has.
     pub const FULL: ArmLimits = ArmLimits {
         torque: TorqueLimit::FULL,
-        speed: MovingSpeed(1023),
+        speed: MovingSpeed::MOST,
     };
 
-    /// Nothing at all; no robot is armed so.
+    /// No torque, at the least speed; no robot is armed so.
     pub const NONE: ArmLimits = ArmLimits {
         torque: TorqueLimit::NONE,
-        speed: MovingSpeed(0),
+        speed: MovingSpeed::LEAST,
     };
 
-    /// Whether both are limits a servo knows.
+    /// Whether both are limits a servo knows; [`MovingSpeed::UNLIMITED`] is none.
     pub fn is_sound(&self) -> bool {
-        (1..=1023).contains(&self.torque.0) && (1..=1023).contains(&self.speed.0)
+        (1..=TorqueLimit::FULL.0).contains(&self.torque.0)
+            && (MovingSpeed::LEAST.0..=MovingSpeed::MOST.0).contains(&self.speed.0)
     }
 }
 

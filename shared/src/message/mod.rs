@@ -89,24 +89,31 @@ pub enum MessageError {
 
 /// Writes the frame of a message into `out`; its length, or nothing if it does not fit.
 pub fn encode<M: Message>(sequence: u8, message: &M, out: &mut [u8; MAX_FRAME]) -> Option<usize> {
+    let Some(byte) = M::WITHOUT else {
+        let (_, body) = out.split_first_mut()?;
+        let length = write_body(sequence, message, body.get_mut(..MAX_BODY)?)?;
+        return frame::encode_in_place(length, out);
+    };
     let mut body = [0; MAX_BODY];
+    let length = write_body(sequence, message, &mut body)?;
+    frame::encode_without(byte, body.get(..length)?, out)
+}
+
+/// Sequence number, message and, if it is critical, check; their length.
+fn write_body<M: Message>(sequence: u8, message: &M, body: &mut [u8]) -> Option<usize> {
     let (first, content) = body.split_first_mut()?;
     *first = sequence;
-    let mut length = 1 + postcard::to_slice(message, content).ok()?.len();
-    if message.is_critical() {
-        let check = crc32(body.get(..length)?).to_le_bytes();
-        let slots = body.get_mut(length..length + check.len())?;
-        slots
-            .iter_mut()
-            .zip(check)
-            .for_each(|(slot, byte)| *slot = byte);
-        length += check.len();
+    let length = 1 + postcard::to_slice(message, content).ok()?.len();
+    if !message.is_critical() {
+        return Some(length);
     }
-    let body = body.get(..length)?;
-    match M::WITHOUT {
-        None => frame::encode(body, out),
-        Some(byte) => frame::encode_without(byte, body, out),
-    }
+    let check = crc32(body.get(..length)?).to_le_bytes();
+    let slots = body.get_mut(length..length + check.len())?;
+    slots
+        .iter_mut()
+        .zip(check)
+        .for_each(|(slot, byte)| *slot = byte);
+    Some(length + check.len())
 }
 
 /// Reads the body of a frame.

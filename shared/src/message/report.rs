@@ -237,6 +237,9 @@ pub struct Statistics {
     pub strangers: u16,
     /// Requests sent a second time.
     pub retries: u16,
+    /// Bytes of servos that found no room towards the host while it was an adapter: of answers
+    /// longer than its queue.
+    pub cut: u16,
     /// Per servo, how often a tick passed without its answer.
     pub missed: [u8; SERVOS],
 }

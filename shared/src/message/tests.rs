@@ -57,6 +57,7 @@ fn the_largest_messages_fit_a_frame() {
         garbled: u16::MAX,
         strangers: u16::MAX,
         retries: u16::MAX,
+        cut: u16::MAX,
         missed: [u8::MAX; SERVOS],
     };
     round_trip(1, Report::Statistics(full));

@@ -58,6 +58,7 @@ fn it_starts_at_the_readings_and_remembers_what_was_given() {
     assert_eq!(memory.all()[STATE..], [-1, 1, -1, 0, 1, 2]);
     assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-71, -92]);
     memory.all[1] = 1000;
+    memory.step = PREDICT;
     assert_eq!(observer.raw_command(&mut memory, &[0; 4]), [-100, -92]);
     // A reading that is missing is the one predicted.
     let heard = [true, false, true, false];
@@ -76,21 +77,30 @@ fn it_starts_at_the_readings_and_remembers_what_was_given() {
 fn the_next_estimate_counts_from_the_last_step_on() {
     let observer = observer();
     let mut memory = Memory::ZERO;
+    let steps = |memory: &mut Memory| {
+        let mut steps = 0;
+        while observer.step_update(memory) {
+            steps += 1;
+        }
+        steps
+    };
     observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
-    assert!(!observer.step_update(&mut memory));
+    // Prediction: departures and a row per reading.
+    assert_eq!(steps(&mut memory), 1 + READINGS);
     observer.raw_command(&mut memory, &[11, 22, 33, 44]);
+    assert_eq!(steps(&mut memory), 0);
     let (mut whole, mut left_to_next) = (memory, memory);
     observer.update(&mut whole, [7, 9]);
     observer.begin_update(&mut memory, [7, 9]);
     let before = memory;
-    for _ in 1..STEPS {
+    for _ in 0..ESTIMATED {
         assert!(observer.step_update(&mut memory));
         assert_eq!(memory.all(), before.all());
     }
     assert!(observer.step_update(&mut memory));
     assert_ne!(memory.all(), before.all());
+    assert_eq!(steps(&mut memory), 1 + READINGS);
     assert_eq!(memory, whole);
-    assert!(!observer.step_update(&mut memory));
     // What was not done meanwhile is done before the next raw command.
     observer.begin_update(&mut left_to_next, [7, 9]);
     let next = [12, 23, 34, 45];
@@ -102,7 +112,7 @@ fn the_next_estimate_counts_from_the_last_step_on() {
     // A new start forgets an update.
     observer.begin_update(&mut memory, [7, 9]);
     observer.start(&mut memory, &[10, 20, 30, 40], [1, 2, 3]);
-    assert!(!observer.step_update(&mut memory));
+    assert_eq!(steps(&mut memory), 1 + READINGS);
 }
 
 #[test]

@@ -141,11 +141,16 @@ impl Joint {
         }
     }
 
+    /// The servo that measures and drives, and the one that drives along, if one does.
+    pub fn servos(&self) -> [Option<u8>; 2] {
+        [self.id, self.mirror].map(|id| (id < NO_SERVO).then_some(id))
+    }
+
     /// Both servos' commands, each with its id.
-    pub fn commands(&self, command: i16) -> impl Iterator<Item = (u8, Signed)> + use<> {
-        let pair = [(self.id, command), (self.mirror, -command)];
-        let there = pair.into_iter().filter(|(id, _)| *id < 254);
-        there.map(|(id, command)| (id, Signed::new(command)))
+    pub fn commands(&self, command: i16) -> [Option<(u8, Signed)>; 2] {
+        let [own, mirrored] = self.servos();
+        let of = |id: Option<u8>, command| id.map(|id| (id, Signed::new(command)));
+        [of(own, command), of(mirrored, -command)]
     }
 
     /// Whether the servo has a code for this angle that is not the last of its range: in wheel mode
@@ -161,15 +166,13 @@ impl Joint {
 
     /// Whether no servo drives both joints: it would be given two commands.
     pub(super) fn is_apart_from(&self, other: &Joint) -> bool {
-        let own = [self.id, self.mirror];
-        let shared = own.into_iter().filter(|id| *id < NO_SERVO);
-        shared
-            .into_iter()
-            .all(|id| id != other.id && id != other.mirror)
+        let own = self.servos().into_iter().flatten();
+        own.into_iter()
+            .all(|id| !other.servos().contains(&Some(id)))
     }
 
     pub(super) fn is_sound(&self) -> bool {
-        self.id < 254
+        self.id < NO_SERVO
             && self.centre <= 1023
             && self.mirror != self.id
             // Else every command would be the largest.

@@ -14,8 +14,8 @@ use handstand_shared::message::{
 };
 use handstand_shared::plan::{Gyro, Plan};
 
-/// The longest that a tick may take, us: what else must fit into the period is what it did not meet
-/// while it was measured, and what is done between ticks.
+/// The longest that a tick may take, us: 60 % of the period. More than that must fit into what is
+/// left: what the tick did not meet while it was measured, and what is done between ticks.
 pub const LONGEST_TICK_US: u16 = {
     use handstand_firmware::design::{FIRST_BYTE_US, TICK_US};
     use handstand_shared::packed::SERVOS;
@@ -25,8 +25,14 @@ pub const LONGEST_TICK_US: u16 = {
     const SILENT_US: u16 = 2 * FIRST_BYTE_US;
     /// A command of the host's is received and obeyed: 0.2 ms by the program counter of simavr.
     const COMMAND_US: u16 = 250;
-    TICK_US - STALLS_US - SILENT_US - COMMAND_US
+    let longest = TICK_US / 10 * 6;
+    assert!(longest + STALLS_US + SILENT_US + COMMAND_US <= TICK_US);
+    longest
 };
+
+/// The same while torque comes on for balancing, us: the estimate begins in its first tick, which
+/// predicts nothing while servos are awaited, and goals and torque of the others follow.
+pub const LONGEST_ONSET_US: u16 = handstand_firmware::design::TICK_US / 100 * 64;
 
 /// Where the CM-5 has the first link's attitude from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -124,7 +124,8 @@ pub(super) fn try_arm(bench: &mut impl SimulatedCm5) -> Result<(), Option<Refusa
 
 /// The first report of this kind; answers wait behind a report of every tick.
 fn awaited<T>(bench: &mut impl SimulatedCm5, kind: impl Fn(Report) -> Option<T>) -> Option<T> {
-    for _ in 0..25 {
+    // Arming takes 30 ticks where a servo cannot be read.
+    for _ in 0..60 {
         bench.run_ms(10.0);
         if let Some(found) = bench
             .reports()

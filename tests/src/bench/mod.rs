@@ -16,6 +16,7 @@ mod robot;
 mod run;
 #[cfg(unix)]
 mod serve;
+mod servo_faults;
 mod servos;
 mod stream;
 
@@ -24,7 +25,8 @@ pub use ages::{Ages, Spread, ages};
 pub use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
 
 pub use balance::{
-    Balanced, Conditions, LONGEST_TICK_US, Source, Tick, arm_balance, balance, plan,
+    Balanced, Conditions, LONGEST_ONSET_US, LONGEST_TICK_US, Source, Tick, arm_balance, balance,
+    plan,
 };
 #[cfg(simavr)]
 pub use boot::{Boot, boot, eeprom_with, noise};
@@ -40,5 +42,6 @@ pub use robot::model;
 pub use run::REPORT_MS;
 #[cfg(unix)]
 pub use serve::serve;
+pub use servo_faults::{gyro_at_rail, restart};
 pub use servos::{Rig, corners, random_starts};
 pub use stream::{StreamRun, stream};

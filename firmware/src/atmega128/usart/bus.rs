@@ -59,6 +59,12 @@ pub fn put(r: &Peripherals, mut bytes: &[u8]) {
         bus_transmits();
         begin(r, *first);
         bytes = rest;
+        // The second goes at once: the first will be out before the others are handed over.
+        if let Some((second, rest)) = bytes.split_first() {
+            OUT.push(*second);
+            wake(r);
+            bytes = rest;
+        }
     }
     bytes.iter().for_each(|byte| OUT.push(*byte));
     wake(r);
@@ -145,17 +151,14 @@ pub fn flush() {
 #[inline(always)]
 pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16, all: u16) -> usize {
     finish(r);
-    let mut used = 0;
     // What came meanwhile, while the interrupt still takes the next ones: the receiver itself holds
     // two bytes.
-    while let Some(slot) = out.get_mut(used) {
-        let Some(byte) = IN.pop() else { break };
-        *slot = byte;
-        used += 1;
-    }
+    let mut used = take_waiting(out, 0);
     // SAFETY: plain bits; nothing is being sent.
     let receiver = |bits| unsafe { r.USART0.ucsr0b().write(|w| w.bits(bits)) };
     receiver(RECEIVER_ON | TRANSMITTER);
+    // What came before the interrupt was off.
+    used = take_waiting(out, used);
     let mut limit = if used == 0 { first } else { between };
     let mut began = clock(r);
     'bytes: for slot in out.iter_mut().skip(used) {
@@ -164,10 +167,6 @@ pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16, all: u16)
             break;
         }
         *slot = loop {
-            // What came before the interrupt was off.
-            if let Some(byte) = IN.pop() {
-                break byte;
-            }
             if r.USART0.ucsr0a().read().bits() & RECEIVED != 0 {
                 break r.USART0.udr0().read().bits();
             }
@@ -182,6 +181,17 @@ pub fn hear(r: &Peripherals, out: &mut [u8], first: u16, between: u16, all: u16)
         limit = between;
     }
     receiver(RECEIVER | TRANSMITTER);
+    used
+}
+
+/// Takes what the interrupt has taken, from this place on; how many are there then.
+#[inline(always)]
+fn take_waiting(out: &mut [u8], mut used: usize) -> usize {
+    while let Some(slot) = out.get_mut(used) {
+        let Some(byte) = IN.pop() else { break };
+        *slot = byte;
+        used += 1;
+    }
     used
 }
 

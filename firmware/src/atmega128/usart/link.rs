@@ -81,8 +81,7 @@ impl Write for Link {
     #[inline(always)]
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
         while !bytes.is_empty() && OUT.room() == 0 {}
-        let count = bytes.len().min(OUT.room());
-        bytes.iter().take(count).for_each(|byte| OUT.push(*byte));
+        let count = OUT.push_all(bytes);
         // SAFETY: plain bits, in one store.
         unsafe {
             self.0

@@ -3,19 +3,6 @@
 use super::rig::*;
 use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
 use handstand_shared::message::*;
-use handstand_shared::plan::{Gyro, Plan};
-
-/// A plan that balances with the gyro; 1 degree/s per code.
-fn gyro_plan() -> Plan {
-    Plan {
-        gyro: Gyro {
-            from_host: false,
-            zero: 512,
-            scale: 279,
-        },
-        ..plan()
-    }
-}
 
 fn ready() -> (VirtualCm5, u16) {
     let mut cm5 = with_wheels();

@@ -271,7 +271,7 @@ fn compare(cm5: &mut VirtualCm5, plan: &Plan, random: &mut ChaCha8Rng) -> usize 
         let commands = reference.commands(sensed, heard, is_heard);
         none += commands.iter().filter(|command| **command == 0).count();
         for (i, joint) in plan.joints.iter().enumerate() {
-            for (id, wanted) in joint.commands(commands[i]) {
+            for (id, wanted) in joint.commands(commands[i]).into_iter().flatten() {
                 if id == hip && !is_heard[1] {
                     continue;
                 }

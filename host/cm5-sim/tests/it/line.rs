@@ -114,6 +114,37 @@ fn a_report_takes_all_the_room_it_needs() {
     }
 }
 
+/// What the queue to the PC has no room for is lost, and counted: no tool sees it otherwise.
+#[test]
+fn what_is_cut_of_long_answers_is_counted() {
+    let mut cm5 = adapter();
+    greet(&mut cm5);
+    assert_eq!(counted(&mut cm5).cut, 0);
+    // Pings right behind each other: a servo answers them at 1 Mbps, the line passes on 57600.
+    let mut heard = 0;
+    for count in [30, 60] {
+        cm5.clear();
+        cm5.run_ms(100.0);
+        // As if they had come at once.
+        for _ in 0..count {
+            let now_ns = cm5.board.now_ns();
+            for (place, byte) in (1u64..).zip(PING) {
+                cm5.board.bus.receive(now_ns + place * 10_000, byte);
+            }
+            cm5.run_ms(0.2);
+        }
+        cm5.run_ms(100.0);
+        heard += cm5.raw().len() as u16;
+        let now_ms = cm5.now_ms();
+        cm5.pc_mut().receive(now_ms, 0);
+        let cut = counted(&mut cm5).cut;
+        assert_eq!(cut > 0, count == 60, "{count} answers: {cut}");
+        if cut > 0 {
+            assert_eq!(heard + cut, 90 * 6, "every byte is passed on or counted");
+        }
+    }
+}
+
 /// The LEDs say whether the PC was heard in the last 80 ms, and whether all servos answer.
 #[test]
 fn leds_tell_of_both_lines() {

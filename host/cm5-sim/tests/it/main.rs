@@ -5,6 +5,7 @@ mod attitude;
 mod boot_counter;
 mod bus;
 mod fault_log;
+mod floods;
 mod gyro;
 mod invariants;
 mod joints;

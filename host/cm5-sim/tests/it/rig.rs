@@ -59,6 +59,18 @@ pub fn plan() -> Plan {
     }
 }
 
+/// A plan that balances with the gyro; 1 degree/s per code.
+pub fn gyro_plan() -> Plan {
+    Plan {
+        gyro: Gyro {
+            from_host: false,
+            zero: 512,
+            scale: 279,
+        },
+        ..plan()
+    }
+}
+
 /// The plan's bytes.
 pub fn bytes(plan: &Plan) -> Vec<u8> {
     let mut bytes = Vec::new();

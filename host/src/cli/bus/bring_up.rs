@@ -30,16 +30,17 @@ pub fn run(
         talk.write(file, &markdown(&port, &results), false)?;
     }
     let count = |outcome| results.iter().filter(|it| it.outcome == outcome).count();
-    let [passed, failed, open] = [
+    let [passed, deviate, failed, open] = [
         StepOutcome::Passed,
+        StepOutcome::Deviates,
         StepOutcome::Failed,
         StepOutcome::NotDone,
     ]
     .map(count);
     talk.result(&results, || {
-        format!("{passed} steps passed, {failed} failed, {open} not done")
+        format!("{passed} steps passed, {deviate} deviate, {failed} failed, {open} not done")
     })?;
-    Ok(ExitStatus::answer(failed + open == 0))
+    Ok(ExitStatus::answer(deviate + failed + open == 0))
 }
 
 /// Who sits at the terminal.
@@ -88,6 +89,7 @@ impl Person for Attendant<'_> {
     fn hear(&mut self, result: &StepResult) {
         let outcome = match result.outcome {
             StepOutcome::Passed => "passed",
+            StepOutcome::Deviates => "DEVIATES",
             StepOutcome::Failed => "FAILED",
             StepOutcome::NotDone => "not done",
         };
@@ -97,5 +99,11 @@ impl Person for Attendant<'_> {
         };
         self.talk
             .say(&format!("{outcome:8} {}{found}", result.title));
+        if let StepOutcome::Deviates | StepOutcome::Failed = result.outcome {
+            let (expected, otherwise) = (result.expected, result.otherwise);
+            self.talk.say(&format!(
+                "         expected: {expected}; otherwise: {otherwise}"
+            ));
+        }
     }
 }

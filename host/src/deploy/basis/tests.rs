@@ -92,7 +92,7 @@ fn what_no_plan_holds_is_said() {
         &ToldDrives::default(),
     );
     let how = &late.uses.last().unwrap().how;
-    assert!(how.starts_with("20.8 of 37.0 ms"), "{how}");
+    assert!(how.starts_with("20.7 of 37.0 ms"), "{how}");
     late.plan(&robot("")).unwrap();
 }
 

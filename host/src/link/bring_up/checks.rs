@@ -1,7 +1,7 @@
 //! What the program checks of a CM-5 over its line.
 
 use super::steps::Check;
-use super::{Person, StepOutcome};
+use super::{Person, StepOutcome, unknowns};
 use crate::error::{Error, Result};
 use crate::link::bridge::bridged;
 use crate::link::{SerialLink, Session, cause_words, condition_words, fault_log};
@@ -27,35 +27,71 @@ const STILL: u16 = 5;
 /// Torque has to be off so long after the last sign of life.
 const OFF_WITHIN: Duration = Duration::from_millis(300);
 
+/// What a check found.
+pub(super) struct Found {
+    pub outcome: StepOutcome,
+    pub text: String,
+    /// In the step's unit.
+    pub value: Option<f64>,
+}
+
+impl Found {
+    pub fn of(is_well: bool, text: &str) -> Self {
+        let outcome = if is_well {
+            StepOutcome::Passed
+        } else {
+            StepOutcome::Failed
+        };
+        Found {
+            outcome,
+            text: text.to_string(),
+            value: None,
+        }
+    }
+
+    pub fn number(outcome: StepOutcome, text: String, value: f64) -> Self {
+        Found {
+            outcome,
+            text,
+            value: Some(value),
+        }
+    }
+}
+
 /// Outcome and what was found; what the device does wrong is an outcome.
 pub(super) fn measured<L: SerialLink>(
     check: Check,
     link: &mut L,
     ids: &[u8],
     person: &mut dyn Person,
-) -> Result<(StepOutcome, String)> {
+) -> Result<Found> {
     if check.gives_torque()
         && let Some(id) = ids.first()
         && !person.allows_torque(*id)?
     {
-        return Ok((StepOutcome::NotDone, "torque was not allowed".to_string()));
+        return Ok(Found {
+            outcome: StepOutcome::NotDone,
+            ..Found::of(false, "torque was not allowed")
+        });
     }
+    let plain = |outcome: CheckOutcome| outcome.map(|(is_well, text)| Found::of(is_well, &text));
     let checked = match check {
-        Check::Firmware => firmware(link),
-        Check::Servos => servos(link, ids),
-        Check::Supply => supply(link, ids),
-        Check::Ticks => ticks(link, ids),
-        Check::Stack => stack(link),
-        Check::GyroZero => gyro_zero(link, ids),
-        Check::GoalTorque => goal_torque(link, ids),
-        Check::LimitedTorque => limited_torque(link, ids),
-        Check::LinkLoss => link_loss(link, ids),
+        Check::Gap => unknowns::gap(link, ids),
+        Check::ResetFlags => unknowns::reset_flags(link),
+        Check::Rate => unknowns::rate(link, ids),
+        Check::Firmware => plain(firmware(link)),
+        Check::Servos => plain(servos(link, ids)),
+        Check::Supply => plain(supply(link, ids)),
+        Check::Ticks => plain(ticks(link, ids)),
+        Check::Stack => plain(stack(link)),
+        Check::GyroZero => plain(gyro_zero(link, ids)),
+        Check::GoalTorque => plain(goal_torque(link, ids)),
+        Check::LimitedTorque => plain(limited_torque(link, ids)),
+        Check::LinkLoss => plain(link_loss(link, ids)),
     };
     match checked {
-        Ok((true, found)) => Ok((StepOutcome::Passed, found)),
-        Ok((false, found)) => Ok((StepOutcome::Failed, found)),
-        Err(error @ Error::Usage(_)) => Err(error),
-        Err(error) => Ok((StepOutcome::Failed, error.to_string())),
+        Err(error) if !matches!(error, Error::Usage(_)) => Ok(Found::of(false, &error.to_string())),
+        found => found,
     }
 }
 
@@ -225,7 +261,10 @@ fn link_loss<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
 }
 
 /// A session that reads these servos, torque off.
-fn streaming<'a, L: SerialLink>(link: &'a mut L, ids: &[u8]) -> Result<Session<&'a mut L>> {
+pub(super) fn streaming<'a, L: SerialLink>(
+    link: &'a mut L,
+    ids: &[u8],
+) -> Result<Session<&'a mut L>> {
     let mut list = ServoList {
         count: ids.len().min(SERVOS) as u8,
         ids: [0; SERVOS],
@@ -252,7 +291,10 @@ fn arm<L: SerialLink>(session: &mut Session<L>) -> Result<()> {
 }
 
 /// Reports for so long, with signs of life.
-fn stream<L: SerialLink>(session: &mut Session<L>, time: Duration) -> Result<Vec<StreamReport>> {
+pub(super) fn stream<L: SerialLink>(
+    session: &mut Session<L>,
+    time: Duration,
+) -> Result<Vec<StreamReport>> {
     let until = session.link().now() + time;
     let mut reports = Vec::new();
     while session.link().now() < until {
@@ -264,7 +306,7 @@ fn stream<L: SerialLink>(session: &mut Session<L>, time: Duration) -> Result<Vec
     Ok(reports)
 }
 
-fn telemetry<L: SerialLink>(session: &mut Session<L>) -> Result<Telemetry> {
+pub(super) fn telemetry<L: SerialLink>(session: &mut Session<L>) -> Result<Telemetry> {
     let ask = Command::Ask(Subject::Telemetry);
     let telemetry = session.fetch(&ask, |report| match report {
         Report::Telemetry(telemetry) => Some(*telemetry),

@@ -74,7 +74,7 @@ fn no_torque_before_every_earlier_step_passed() {
     let absent = with(sound, &[1], &mut Absent);
     let denied = with(sound, &[1], &mut Present { denies: "charger" });
     let low = of("ids=1-18,delay=0,supply=8.0", &[1]);
-    for (results, open) in [(absent, "fuses"), (denied, "charger"), (low, "supply")] {
+    for (results, open) in [(absent, "aref"), (denied, "charger"), (low, "supply")] {
         for step in STEPS {
             let StepKind::Measured(check) = step.kind else {
                 continue;
@@ -91,15 +91,85 @@ fn no_torque_before_every_earlier_step_passed() {
     }
 }
 
+fn result(results: &[StepResult], id: &str) -> StepResult {
+    let found = results.iter().find(|result| result.id == id);
+    found.expect("a step of that name").clone()
+}
+
+/// Boards that deviate: each gets an honest answer, with its number, and torque all the same.
+#[test]
+fn what_nobody_publishes_is_measured() {
+    let of_gap = |text: &str| {
+        let results = of(text, &[1]);
+        assert_eq!(outcome(&results, "torque").0, StepOutcome::Passed, "{text}");
+        let gap = result(&results, "gap");
+        (gap.outcome, gap.value.expect("a number"))
+    };
+    // The line's own: a byte of 57600 baud.
+    let (outcome_of, gap_us) = of_gap("ids=1-18,delay=0");
+    assert_eq!(outcome_of, StepOutcome::Passed);
+    assert!((gap_us - 163.6).abs() < 0.1, "{gap_us}");
+    // A byte more on the line is 173.6 us.
+    for (needs_us, least_us) in [(150, 163.6), (300, 337.2), (1000, 1031.7)] {
+        let (outcome_of, gap_us) = of_gap(&format!("ids=1-18,delay=0,write_us={needs_us}"));
+        let is_passed = needs_us < 200;
+        assert_eq!(outcome_of == StepOutcome::Passed, is_passed, "{needs_us}");
+        assert_eq!(
+            outcome_of == StepOutcome::Deviates,
+            !is_passed,
+            "{needs_us}"
+        );
+        assert!((gap_us - least_us).abs() < 0.5, "{needs_us}: {gap_us}");
+    }
+}
+
+#[test]
+fn the_rate_is_that_of_the_bus() {
+    let all: Vec<u8> = (1..=18).collect();
+    for (text, ids, expected) in [
+        ("ids=1-18,delay=0", &all[..], StepOutcome::Passed),
+        // 200 us of return delay each.
+        ("ids=1-6,delay=100", &all[..6], StepOutcome::Deviates),
+        ("ids=1-18,delay=0,drop=0.3", &all[..], StepOutcome::Failed),
+    ] {
+        let rate = result(&of(text, ids), "rate");
+        assert_eq!(rate.outcome, expected, "{text}: {rate:?}");
+        assert!(rate.value.is_some_and(|per_s| per_s > 90.0), "{rate:?}");
+    }
+}
+
+/// What a boot loader leaves of the reset's flags, and what a person measured.
+#[test]
+fn flags_and_what_a_person_says_are_told_as_numbers() {
+    for (flags, expected) in [(1, StepOutcome::Passed), (0, StepOutcome::Deviates)] {
+        let bus = set_up(&spec("ids=1-18,delay=0").unwrap()).unwrap();
+        let mut port = Cm5Port::new(bus);
+        port.set_reset_cause(flags);
+        let mut person = Present { denies: "nothing" };
+        let results = bring_up(&mut SimLink(port), &[1], &mut person).unwrap();
+        let told = result(&results, "reset-flags");
+        assert_eq!(
+            (told.outcome, told.value),
+            (expected, Some(f64::from(flags)))
+        );
+        assert!(!told.otherwise.is_empty());
+        assert_eq!(outcome(&results, "torque").0, StepOutcome::Passed);
+        let page = markdown("sim-cm5", &results);
+        assert_eq!(page.contains("DEVIATES"), flags == 0, "{page}");
+    }
+    assert_eq!(number("yes, 48.5 ms"), Some(48.5));
+    assert_eq!(number("yes"), None);
+}
+
 #[test]
 fn what_is_wrong_fails_its_own_step() {
     for (text, ids, failing) in [
         ("ids=1-18,delay=0,supply=8.0", &[1][..], &["supply"][..]),
-        ("ids=1-18,delay=0,dead=2", &[1, 2], &["servos"]),
+        ("ids=1-18,delay=0,dead=2", &[1, 2], &["servos", "rate"]),
         (
             "ids=1-18,delay=254",
             &(1..=18).collect::<Vec<u8>>(),
-            &["ticks"],
+            &["ticks", "rate"],
         ),
         ("ids=1-18,delay=0,hot=1", &[1], &["torque"]),
         // Arming writes a torque limit, which ends an overload of before.

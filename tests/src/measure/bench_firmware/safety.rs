@@ -137,8 +137,9 @@ pub(super) fn noises(_: &Args, _: Option<&Built>) -> Vec<Row> {
 
 /// The state machine under random commands, times and faults: the tests', longer.
 pub(super) fn invariants(args: &Args, _: Option<&Built>) -> Vec<Row> {
+    /// Of each run; two tests run beside each other.
     const STEPS: usize = 1000;
-    let runs = if args.quick { 100 } else { 5000 };
+    let runs = args.reduced(args.steps, 200_000).div_ceil(2 * STEPS);
     let words = [
         "test",
         "--release",
@@ -149,18 +150,20 @@ pub(super) fn invariants(args: &Args, _: Option<&Built>) -> Vec<Row> {
         "invariants",
     ];
     let mut cargo = handstand_xtask::cargo(&words);
+    let begun = std::time::Instant::now();
     let status = cargo.env("PROPTEST_CASES", runs.to_string()).status();
     let holds = status.is_ok_and(|status| status.success());
+    let minutes = begun.elapsed().as_secs_f64() / 60.0;
     let steps = 2 * runs * STEPS;
     vec![Row {
         name: "invariants under random commands, times and faults (logic in process)",
         measured: format!(
-            "{steps} steps: {}",
+            "{steps} steps in {minutes:.1} minutes, building included: {}",
             if holds { "all hold" } else { "broken" }
         ),
         limit: "all hold",
         holds: Some(holds),
-        values: json!({"steps": steps}),
+        values: json!({"steps": steps, "minutes": minutes}),
     }]
 }
 

@@ -153,31 +153,20 @@ pub fn a_servo_gives_up_while_balancing(bench: &mut impl SimulatedCm5, way: Give
 /// A servo loses its RAM while it is sent goals, so many ticks after arming: within two rounds of
 /// the housekeeping the robot is let down, and the servo named.
 pub fn a_restart_is_noticed(bench: &mut impl SimulatedCm5, id: u8, phase: u8) {
-    let goals = Command::Goals(Positions::pack([540; SERVOS]));
-    let go = |bench: &mut _, ticks: u8| {
-        for _ in 0..ticks {
-            say_it(bench, &goals);
-        }
-    };
-    arm(bench);
-    go(bench, 10 + phase);
-    bench.bus().servo(id).expect("18 servos").restart();
-    go(bench, 22);
-    let state = condition(bench);
-    let fault = Condition::Fault(Cause::TorqueLost);
+    let noticed_ms = restart(bench, id, phase);
     assert!(
-        [Some(Condition::Soft), Some(fault)].contains(&state),
-        "servo {id}, phase {phase}: {state:?}"
+        noticed_ms.is_some_and(|ms| ms <= 200.0),
+        "servo {id}, phase {phase}: {noticed_ms:?} ms"
     );
-    go(bench, 20);
+    let goals = Command::Goals(Positions::pack([540; SERVOS]));
+    for _ in 0..20 {
+        bench.send(&goals);
+        bench.run_ms(10.0);
+    }
+    let fault = Condition::Fault(Cause::TorqueLost);
     assert_eq!(condition(bench), Some(fault), "servo {id}, phase {phase}");
     assert!(!bench.bus().any_torque());
     assert_eq!(tripped(bench).map(|servo| servo.id), Some(id));
-}
-
-fn say_it(bench: &mut impl SimulatedCm5, command: &Command) {
-    bench.send(command);
-    bench.run_ms(10.0);
 }
 
 /// Eighteen servos and one more of this id.
@@ -192,13 +181,7 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
     let others = (0..SERVOS).filter(|place| *place != 4);
     for place in others {
         let missing = run.reports.iter().filter(|(_, r)| !r.is_present(place));
-        // The end of a twin's long answer may meet the request to the next servo.
-        let most = if place == 5 {
-            run.reports.len() / 50
-        } else {
-            0
-        };
-        assert!(missing.count() <= most, "servo {}", place + 1);
+        assert_eq!(missing.count(), 0, "servo {}", place + 1);
     }
     let heard = run.reports.iter().filter(|(_, r)| r.is_present(4)).count();
     // While its motor interrupt holds one of them back, the other one is heard whole.
@@ -220,7 +203,9 @@ pub fn twins_cost_their_own_slot_only(bench: &mut impl SimulatedCm5) {
         "{counted:?}"
     );
     let (before, after) = (counted.missed[3], counted.missed[5]);
-    assert!(before == 0 && after <= 10, "{counted:?}");
+    // While arming the twins were read whole, now and then: the end of so long an answer meets the
+    // request to the next servo.
+    assert!(before == 0 && after <= 5, "{counted:?}");
 }
 
 pub fn twins_do_not_balance(bench: &mut impl SimulatedCm5, id: u8) {
@@ -229,6 +214,8 @@ pub fn twins_do_not_balance(bench: &mut impl SimulatedCm5, id: u8) {
     match arm_balance(bench, &plan) {
         // One of them was heard whole in that very tick.
         Ok(()) => stops_balancing(bench, id),
+        // The same, but neither ever said its mode undisturbed.
+        Err(Some(Refusal::Wheel)) => {}
         refused => assert_eq!(refused, Err(Some(Refusal::Servo)), "servo {id}"),
     }
     assert!(!bench.bus().any_torque());

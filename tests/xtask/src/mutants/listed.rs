@@ -60,14 +60,14 @@ pub const LISTED: &[ListedMutant] = &[
     logic(
         "low-supply stop removed",
         "firmware/src/app/soft_stop.rs",
-        "} else if self.low.is_some_and(|low| low.us() >= LOW_SUPPLY_US) {",
+        "} else if armed.low.is_some_and(|low| low.us() >= LOW_SUPPLY_US) {",
         "} else if false {",
     ),
     logic(
         "disarm keeps its token",
         "firmware/src/app/soft_stop.rs",
-        "        self.token = None;\n        self.goal",
-        "        self.goal",
+        "        self.tokens.set(Token::None);\n        if let",
+        "        if let",
     ),
     logic(
         "check of a plan's slot ignored",

@@ -2,8 +2,8 @@
 
 use super::IDS;
 use super::judged::{Judged, list};
-use super::steps::{ServoFault, Step, Token};
-use crate::rig::{bytes, plan};
+use super::steps::{Flood, ServoFault, Step, Token, Upload};
+use crate::rig::{bytes, gyro_plan, plan};
 use handstand_cm5_sim::{Bus, HostBoard, SimulatedCm5, VirtualCm5};
 use handstand_firmware::app::State;
 use handstand_shared::control_table::TORQUE_ENABLE;
@@ -48,19 +48,21 @@ impl Judged {
             Step::PlanRead(offset) => {
                 self.send(&Command::PlanRead { offset: *offset });
             }
-            Step::Chunk(at, own) => {
-                let table = table(*own);
+            Step::Chunk(at, which) => {
+                let table = table(*which);
                 let mut bytes = [0; PLAN_CHUNK];
                 let piece = table.chunks(PLAN_CHUNK).nth(*at).unwrap_or(&[]);
                 bytes[..piece.len()].copy_from_slice(piece);
                 let offset = (at * PLAN_CHUNK) as u16;
                 self.send(&Command::PlanChunk { offset, bytes });
             }
-            Step::Store(own) => {
-                let table = table(*own);
+            Step::Store(which) => {
+                let table = table(*which);
                 let (length, check) = (table.len() as u16, crc32(&table));
                 self.send(&Command::PlanStore { length, check });
             }
+            Step::Flood(what, ms) => self.flood(*what, *ms),
+            Step::Gyro(code) => self.set_gyro(*code),
             Step::List(whole) => {
                 let list = if *whole {
                     Command::ServoList(ServoList::default())
@@ -85,6 +87,7 @@ impl Judged {
                     self.odd.push(id);
                 }
                 self.servo(*at).faults.dead = *dead;
+                self.deafen();
                 self.disturb(*at);
             }
             Step::Overload(at) => {
@@ -113,6 +116,11 @@ impl Judged {
             }
             Step::Servo(at, fault) => self.servo_fault(*at, *fault),
             Step::Restart(cause) => self.restart(*cause),
+            Step::Flash(by_gyro) => {
+                self.cm5.board.eeprom.fill(0xff);
+                self.cm5.board.compiled = compiled(*by_gyro);
+                self.restart(ResetCause::POWER);
+            }
         }
         self.judge();
     }
@@ -161,7 +169,14 @@ impl Judged {
         }
     }
 
+    /// Faults that spoil requests change: what was missed under them is said again.
+    fn deafen(&mut self) {
+        let now_ms = self.cm5.now_ms();
+        self.deaf_ms.fill(now_ms);
+    }
+
     fn ready(&mut self, mode: Mode) {
+        self.deafen();
         for at in 0..IDS.len() {
             let servo = self.servo(at);
             servo.faults.dead = false;
@@ -177,6 +192,7 @@ impl Judged {
         self.cm5.board.bus.set_noise(now_ns, None);
         self.end_noise();
         self.release_buttons();
+        self.set_gyro(512);
         self.supply_ms = self.cm5.now_ms();
         self.hello(VERSION);
         self.send(&Command::Mode(mode));
@@ -196,6 +212,9 @@ impl Judged {
     }
 
     fn servo_fault(&mut self, at: usize, fault: ServoFault) {
+        if let ServoFault::Corrupt(_) | ServoFault::Late(_) = fault {
+            self.deafen();
+        }
         self.disturb(at);
         self.has_restarted[at] |= matches!(fault, ServoFault::Restarts);
         let servo = self.servo(at);
@@ -222,6 +241,8 @@ impl Judged {
         let tokens = std::mem::take(&mut self.tokens);
         let now_ns = self.cm5.board.now_ns();
         let mut board = HostBoard::at(now_ns, bus);
+        board.take_time();
+        board.gyro = self.cm5.board.gyro;
         (board.eeprom, board.compiled) = (eeprom, compiled);
         board.reset_cause = ResetCause(cause);
         let deaf = board.bus.servos.iter().filter(|servo| servo.faults.dead);
@@ -233,9 +254,37 @@ impl Judged {
         self.button_ms = None;
     }
 
+    fn flood(&mut self, what: Flood, ms: f64) {
+        let command = match what {
+            Flood::Telemetry => Command::Ask(Subject::Telemetry),
+            Flood::Statistics => Command::Ask(Subject::Statistics),
+            Flood::PlanRead => Command::PlanRead { offset: 0 },
+            Flood::FaultRead => Command::FaultRead { back: 0 },
+            Flood::WrongPlan => Command::PlanStore {
+                length: 1200,
+                check: 1,
+            },
+            Flood::Arm => Command::Arm {
+                token: self.tokens.last().map_or(0, |token| token ^ 0x5555),
+                limits: ArmLimits::FULL,
+            },
+        };
+        let until_ms = self.cm5.now_ms() + ms;
+        while self.cm5.now_ms() < until_ms {
+            // The line never falls silent.
+            while self.cm5.board.last_byte_ns() < self.cm5.board.now_ns() + 15_000_000 {
+                self.cm5.send(&command);
+            }
+            self.run(5.0);
+        }
+        let left_ms = self.cm5.board.last_byte_ns() as f64 * 1e-6 - self.cm5.now_ms();
+        self.run(left_ms.max(0.0) + 0.01);
+        self.cm5.clear();
+    }
+
     /// As an adapter it passes them on: any could be a packet that switches torque on.
     fn garbage(&mut self, bytes: &[u8]) {
-        if self.cm5.app.state() == State::Bridge {
+        if let State::Bridge = self.cm5.app.state() {
             return;
         }
         self.cm5.send_bytes(bytes);
@@ -244,11 +293,12 @@ impl Judged {
     }
 }
 
-/// A plan's bytes: one that can be balanced with, or another one, shorter.
-fn table(own: bool) -> Vec<u8> {
-    match own {
-        true => bytes(&plan()),
-        false => {
+/// A plan's bytes.
+fn table(which: Upload) -> Vec<u8> {
+    match which {
+        Upload::ByHost => bytes(&plan()),
+        Upload::ByGyro => bytes(&gyro_plan()),
+        Upload::Part => {
             let other = Plan {
                 range: 7000,
                 ..plan()
@@ -256,4 +306,13 @@ fn table(own: bool) -> Vec<u8> {
             bytes(&other)[..60].to_vec()
         }
     }
+}
+
+/// The plan compiled in: another one than those that are uploaded.
+pub(super) fn compiled(by_gyro: bool) -> Vec<u8> {
+    let mut table = bytes(&if by_gyro { gyro_plan() } else { plan() });
+    if let Some(last) = table.last_mut() {
+        *last ^= 1;
+    }
+    table
 }

@@ -43,13 +43,14 @@ impl Judged {
         }
         self.armed = is_armed;
         self.judge_torque(now_ms);
+        self.judge_times(now_ms);
         if is_armed {
             self.judge_armed(now_ms);
         }
         self.goals = self.goals_now();
         let servos = self.cm5.board.bus.servos.iter();
         self.had_torque = servos.map(|servo| servo.torque_is_on()).collect();
-        self.was_streaming = self.cm5.app.state() == State::Stream(Torque::On);
+        self.was_streaming = matches!(self.cm5.app.state(), State::Stream(Torque::On(_)));
         self.looked_ms = now_ms;
         let unfed_ms = self.cm5.board.longest_unfed_ns as f64 * 1e-6;
         assert!(
@@ -76,12 +77,19 @@ impl Judged {
         self.gave_up.clear();
         self.off_ms = None;
         self.odd.clear();
-        self.life_ms = self.cm5.now_ms();
+        self.armed_ms = now_ms;
         let is_balance = matches!(self.cm5.app.state(), State::Balance(_));
         if is_balance {
             assert!(self.plan.is_some(), "balancing without a plan");
-            let age_ms = since_ms - self.attitude_ms;
-            assert!(age_ms <= 30.5, "armed with an attitude {age_ms} ms old");
+            if self.is_by_gyro() {
+                // It is heard for ten ticks.
+                let is_bad = |since_ms: Option<f64>| since_ms.is_some_and(|at| now_ms - at > 40.0);
+                assert!(!is_bad(self.rail_ms), "armed with a gyro at a rail");
+                assert!(!is_bad(self.far_ms), "armed with a gyro far from its zero");
+            } else {
+                let age_ms = since_ms - self.attitudes.last_by(now_ms);
+                assert!(age_ms <= 30.5, "armed with an attitude {age_ms} ms old");
+            }
         }
         // Who did not answer was not switched on.
         let bus = &self.cm5.board.bus;
@@ -89,7 +97,7 @@ impl Judged {
         self.odd.extend(deaf.map(|servo| servo.id()));
         // Nor is what missed torque off before, and is not heard now.
         let had_torque = self.had_torque.iter().zip(IDS).enumerate();
-        let unheard = had_torque.filter(|(at, (had, _))| **had && self.is_disturbed(*at));
+        let unheard = had_torque.filter(|(at, (had, _))| **had && self.may_be_deaf(*at));
         let unheard: Vec<u8> = unheard.map(|(_, (_, id))| id).collect();
         self.odd.extend(unheard);
     }
@@ -99,8 +107,7 @@ impl Judged {
         let Some(off_ms) = self.off_ms else { return };
         for (at, servo) in self.cm5.board.bus.servos.iter().enumerate() {
             let id = servo.id();
-            let may_have_missed = servo.faults.corrupt_request > 0.0;
-            let is_odd = may_have_missed || self.is_disturbed(at) || self.odd.contains(&id);
+            let is_odd = self.may_be_deaf(at) || self.odd.contains(&id);
             assert!(
                 is_odd || !servo.torque_is_on(),
                 "servo {id} is torqued, {:.1} ms after torque off, in {:?}",
@@ -108,6 +115,51 @@ impl Judged {
                 self.cm5.app.state()
             );
         }
+    }
+
+    /// Times by the clock on the wall, of what the servos were written: soft within 100 ms of the
+    /// last sign of life, off within 300; and an attitude of at most 30 ms at every command of the
+    /// law.
+    fn judge_times(&mut self, now_ms: f64) {
+        let bus = &self.cm5.board.bus;
+        let state = self.cm5.app.state();
+        let written_ms = |register| {
+            let at_ns = bus.last_write_ns(register);
+            at_ns.map_or(f64::NEG_INFINITY, |ns| ns as f64 * 1e-6)
+        };
+        let since_life = |at_ms: f64| at_ms - self.lives.last_by(at_ms).max(self.armed_ms);
+        let is_on = matches!(
+            state,
+            State::Stream(Torque::On(_)) | State::Balance(Torque::On(_))
+        );
+        let is_balancing = matches!(state, State::Balance(Torque::On(_)));
+        if is_on {
+            let silent_ms = since_life(now_ms);
+            assert!(silent_ms <= 100.3, "{silent_ms} ms without life");
+        }
+        if self.was_on && state.condition() == Condition::Soft {
+            let soft_ms = since_life(written_ms(TORQUE_LIMIT));
+            assert!(soft_ms <= 100.3, "soft {soft_ms} ms after the last life");
+        }
+        // Torque off is said again in the next ticks.
+        let offs = bus.torque_offs.iter().rev().map(|ns| *ns as f64 * 1e-6);
+        let first_off_ms = offs.take_while(|at_ms| *at_ms > self.looked_ms).last();
+        let off_ms = first_off_ms.filter(|_| !state.is_armed()).unwrap_or(now_ms);
+        if state.is_armed() || self.was_armed {
+            let off_ms = since_life(off_ms);
+            assert!(off_ms <= 300.3, "torque {off_ms} ms after the last life");
+        }
+        let law_ms = written_ms(MOVING_SPEED);
+        if is_balancing && self.was_balancing && law_ms > self.looked_ms && !self.is_by_gyro() {
+            let age_ms = law_ms - self.attitudes.last_by(law_ms);
+            assert!(age_ms <= 30.5, "balances by an attitude {age_ms} ms old");
+        }
+        if is_balancing && self.is_by_gyro() {
+            let rail_ms = self.rail_ms.map_or(0.0, |since_ms| now_ms - since_ms);
+            assert!(rail_ms <= 40.0, "the gyro is at a rail for {rail_ms} ms");
+        }
+        (self.was_on, self.was_balancing) = (is_on, is_balancing);
+        self.was_armed = state.is_armed();
     }
 
     fn judge_armed(&mut self, now_ms: f64) {
@@ -123,24 +175,9 @@ impl Judged {
         );
         let is_on = matches!(
             state,
-            State::Stream(Torque::On) | State::Balance(Torque::On)
+            State::Stream(Torque::On(_)) | State::Balance(Torque::On(_))
         );
-        // Until it is noticed: a period, at most two ticks long; and one step of this test.
-        let silent_ms = now_ms - self.life_ms;
-        assert!(
-            !is_on || silent_ms <= 80.0 + 30.0,
-            "{silent_ms} ms without life"
-        );
-        assert!(
-            silent_ms <= 300.0 + 20.0,
-            "torque is on {silent_ms} ms after the last life"
-        );
-        if state == State::Balance(Torque::On) {
-            let age_ms = now_ms - self.attitude_ms;
-            assert!(
-                age_ms <= 30.0 + 30.0,
-                "balances with an attitude {age_ms} ms old"
-            );
+        if let State::Balance(Torque::On(_)) = state {
             let out_ms = self.out_ms.map_or(0.0, |since_ms| now_ms - since_ms);
             assert!(
                 out_ms <= 60.0,
@@ -161,7 +198,7 @@ impl Judged {
         for (at, (servo, before)) in servos.enumerate() {
             let id = servo.id();
             // Arming itself sets them to where the servos stand.
-            if self.was_streaming && state == State::Stream(Torque::On) {
+            if self.was_streaming && matches!(state, State::Stream(Torque::On(_))) {
                 let step = servo.get(GOAL_POSITION).abs_diff(*before);
                 // One that was silent goes on from where it stands.
                 let is_odd = self.is_disturbed(at) || self.odd.contains(&id);

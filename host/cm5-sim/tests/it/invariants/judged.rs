@@ -1,12 +1,15 @@
 //! The firmware on its simulated board, and what must be remembered to judge it.
 
 use super::IDS;
-use crate::rig::{DRIVEN, bytes, plan};
+use super::acts::compiled;
+use crate::rig::{DRIVEN, bytes, gyro_plan};
 use handstand_cm5_sim::{Bus, SimulatedCm5, VirtualCm5};
 use handstand_shared::control_table::{CCW_LIMIT, CW_LIMIT, GOAL_POSITION};
+use handstand_shared::crc::crc32;
 use handstand_shared::message::*;
 use handstand_shared::packed::SERVOS;
 use handstand_shared::raw::Position;
+use std::collections::VecDeque;
 
 /// The firmware, and what must be remembered to judge it.
 #[derive(Debug)]
@@ -18,9 +21,18 @@ pub(super) struct Judged {
     pub(super) armed: bool,
     /// Fingerprint of the plan when it was armed.
     pub(super) plan: Option<u32>,
-    /// When the last sign of life, and the last attitude, were said.
-    pub(super) life_ms: f64,
-    pub(super) attitude_ms: f64,
+    /// When signs of life, and attitudes, arrived, the last ones.
+    pub(super) lives: Arrivals,
+    pub(super) attitudes: Arrivals,
+    /// When torque came on last.
+    pub(super) armed_ms: f64,
+    /// Whether the robot was armed and not yet let down at the last look, and balanced.
+    pub(super) was_on: bool,
+    pub(super) was_balancing: bool,
+    pub(super) was_armed: bool,
+    /// Since when the gyro is at a rail, or further from the plan's zero than at rest.
+    pub(super) rail_ms: Option<f64>,
+    pub(super) far_ms: Option<f64>,
     /// Since when torque may be on in a servo that hears: torque off was ordered.
     pub(super) off_ms: Option<f64>,
     /// Servos whose torque is not the firmware's doing: deaf, or switched by a fault.
@@ -33,8 +45,9 @@ pub(super) struct Judged {
     pub(super) looked_ms: f64,
     /// What arming named.
     pub(super) limits: ArmLimits,
-    /// When each servo was last disturbed, ms.
+    /// When each servo was last disturbed, ms, and when it may have missed a request.
     pub(super) disturbed_ms: Vec<f64>,
+    pub(super) deaf_ms: Vec<f64>,
     pub(super) has_noise: bool,
     /// Whether each servo restarted and may not have been read since.
     pub(super) has_restarted: Vec<bool>,
@@ -46,16 +59,34 @@ pub(super) struct Judged {
     pub(super) arms: Vec<(f64, u16, ArmLimits)>,
     /// Servos that gave up since arming.
     pub(super) gave_up: Vec<u8>,
+    /// Fingerprints of the plans that balance with the gyro.
+    by_gyro: [u32; 2],
+}
+
+/// When frames of a kind arrived, ms; some may be on the line.
+#[derive(Debug, Default)]
+pub(super) struct Arrivals(VecDeque<f64>);
+
+impl Arrivals {
+    fn add(&mut self, at_ms: f64) {
+        self.0.push_back(at_ms);
+        if self.0.len() > 8 {
+            self.0.pop_front();
+        }
+    }
+
+    /// The last that had arrived.
+    pub(super) fn last_by(&self, now_ms: f64) -> f64 {
+        let arrived = self.0.iter().rev().find(|at_ms| **at_ms <= now_ms);
+        arrived.copied().unwrap_or(f64::NEG_INFINITY)
+    }
 }
 
 impl Judged {
     pub(super) fn new() -> Self {
-        let mut compiled = bytes(&plan());
-        // One that differs from the one that is uploaded.
-        let last = compiled.len() - 1;
-        compiled[last] ^= 1;
-        let mut cm5 = VirtualCm5::with_plan(compiled, vec![0xff; 4096], ResetCause(1));
+        let mut cm5 = VirtualCm5::with_plan(compiled(false), vec![0xff; 4096], ResetCause(1));
         cm5.board.bus = Bus::new(IDS);
+        cm5.board.take_time();
         for id in DRIVEN {
             let servo = cm5.bus().servo(id).expect("it is there");
             servo.set(CW_LIMIT, 0);
@@ -68,8 +99,14 @@ impl Judged {
             fresh: None,
             armed: false,
             plan: None,
-            life_ms: f64::NEG_INFINITY,
-            attitude_ms: f64::NEG_INFINITY,
+            lives: Arrivals::default(),
+            attitudes: Arrivals::default(),
+            armed_ms: f64::NEG_INFINITY,
+            was_on: false,
+            was_balancing: false,
+            was_armed: false,
+            rail_ms: None,
+            far_ms: None,
             off_ms: Some(0.0),
             odd: Vec::new(),
             button_ms: None,
@@ -79,12 +116,14 @@ impl Judged {
             looked_ms: 0.0,
             limits: ArmLimits::NONE,
             disturbed_ms: vec![f64::NEG_INFINITY; IDS.len()],
+            deaf_ms: vec![f64::NEG_INFINITY; IDS.len()],
             has_noise: false,
             has_restarted: vec![false; IDS.len()],
             had_torque: vec![false; IDS.len()],
             supply_ms: 0.0,
             arms: Vec::new(),
             gave_up: Vec::new(),
+            by_gyro: [bytes(&gyro_plan()), compiled(true)].map(|table| crc32(&table)),
         };
         judged.hello(VERSION);
         judged.send(&Command::Mode(Mode::Stream));
@@ -98,13 +137,13 @@ impl Judged {
         let sequence = self.cm5.send(command);
         let arrived_ms = self.cm5.board.last_byte_ns() as f64 * 1e-6;
         let before_ms = self.cm5.now_ms();
-        self.run((arrived_ms - before_ms).max(0.0) + 0.01);
         if command.is_life() {
-            self.life_ms = self.cm5.now_ms();
+            self.lives.add(arrived_ms);
         }
         if let Command::Attitude(_) = command {
-            self.attitude_ms = self.cm5.now_ms();
+            self.attitudes.add(arrived_ms);
         }
+        self.run((arrived_ms - before_ms).max(0.0) + 0.01);
         self.cm5
             .reports()
             .into_iter()
@@ -150,7 +189,8 @@ impl Judged {
         };
     }
 
-    /// A servo may do what it was told before, or what noise told it, until it was read.
+    /// A servo that restarted, or was silent, or whose answers were spoilt: the firmware knows its
+    /// goal, and whether it gave up, only when it was read.
     pub(super) fn disturb(&mut self, at: usize) {
         self.disturbed_ms[at] = self.cm5.now_ms();
     }
@@ -164,6 +204,31 @@ impl Judged {
         let is_unsure = faults.corrupt_request + faults.stray + faults.late > 0.0;
         let is_new = self.cm5.now_ms() - self.disturbed_ms[at] < READ_MS;
         faults.dead || is_unsure || self.has_noise || is_new
+    }
+
+    /// Whether a servo may not have heard torque off, which is said again for 200 ms: it is dead, or
+    /// requests to it are corrupted, or meet an answer that comes late. Noise is the controller's
+    /// alone, and a stray byte comes with an answer.
+    pub(super) fn may_be_deaf(&self, at: usize) -> bool {
+        const SAID_MS: f64 = 250.0;
+        let servos = &self.cm5.board.bus.servos;
+        let faults = &servos[at].faults;
+        let collides = servos.iter().any(|servo| servo.faults.late > 0.0);
+        let is_new = self.cm5.now_ms() - self.deaf_ms[at] < SAID_MS;
+        faults.dead || faults.corrupt_request > 0.0 || collides || is_new
+    }
+
+    pub(super) fn set_gyro(&mut self, code: u16) {
+        let now_ms = self.cm5.now_ms();
+        self.cm5.board.gyro = code;
+        let since = |is_so: bool, since: Option<f64>| is_so.then(|| since.unwrap_or(now_ms));
+        self.rail_ms = since(!(8..=1015).contains(&code), self.rail_ms);
+        self.far_ms = since(code.abs_diff(512) > 50, self.far_ms);
+    }
+
+    /// Whether the plan that it balances with is one of the gyro's.
+    pub(super) fn is_by_gyro(&self) -> bool {
+        self.plan.is_some_and(|plan| self.by_gyro.contains(&plan))
     }
 
     pub(super) fn release_buttons(&mut self) {

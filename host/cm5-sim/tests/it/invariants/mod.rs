@@ -14,7 +14,7 @@ use judged::Judged;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use proptest_state_machine::{ReferenceStateMachine, StateMachineTest};
-use steps::{Step, Steps, Token};
+use steps::{Step, Steps, Token, Upload};
 
 /// Runs in each of two tests, of [`STEPS`] each.
 const RUNS: u32 = 500;
@@ -81,7 +81,7 @@ fn torque_off_and_on_again_between_two_looks_is_a_new_arming() {
         Step::Wait(12.0),
         Step::Wait(0.0),
         Step::Ready(Mode::Stream),
-        Step::Chunk(0, false),
+        Step::Chunk(0, Upload::Part),
         Step::Hello(VERSION),
         Step::Mode(Mode::Stream),
         Step::Wait(70.0),

@@ -33,6 +33,30 @@ pub(super) enum ServoFault {
     GoalSwitchesOn(bool),
 }
 
+/// What is asked as fast as the line takes it; none of it is a sign of life.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Flood {
+    Telemetry,
+    Statistics,
+    PlanRead,
+    FaultRead,
+    /// A plan that is read whole to find that it is another one.
+    WrongPlan,
+    /// To arm by a token that is none.
+    Arm,
+}
+
+/// Which plan is uploaded.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Upload {
+    /// One to balance with by the host's attitude.
+    ByHost,
+    /// One to balance with by the gyro.
+    ByGyro,
+    /// The beginning of another one, which is none.
+    Part,
+}
+
 /// What happens next.
 #[derive(Debug, Clone)]
 pub(super) enum Step {
@@ -51,8 +75,12 @@ pub(super) enum Step {
     Ask,
     PlanRead(u16),
     /// A piece of the plan, or of another one.
-    Chunk(usize, bool),
-    Store(bool),
+    Chunk(usize, Upload),
+    Store(Upload),
+    /// For so long, ms.
+    Flood(Flood, f64),
+    /// The gyro's code.
+    Gyro(u16),
     List(bool),
     Button(u8),
     Supply(f64),
@@ -67,6 +95,8 @@ pub(super) enum Step {
     Servo(usize, ServoFault),
     /// The controller restarts.
     Restart(u8),
+    /// Its EEPROM is erased, and it is flashed with a plan compiled in, by the gyro or not.
+    Flash(bool),
 }
 
 /// Steps do not depend on what went before: the model is the system's own account.
@@ -80,6 +110,25 @@ fn limits() -> impl Strategy<Value = ArmLimits> {
         speed: MovingSpeed(speed),
     });
     prop_oneof![3 => full, 1 => any]
+}
+
+fn upload() -> impl Strategy<Value = Upload> {
+    prop_oneof![
+        2 => Just(Upload::ByHost),
+        1 => Just(Upload::ByGyro),
+        2 => Just(Upload::Part),
+    ]
+}
+
+fn flood() -> impl Strategy<Value = Flood> {
+    prop_oneof![
+        Just(Flood::Telemetry),
+        Just(Flood::Statistics),
+        Just(Flood::PlanRead),
+        Just(Flood::FaultRead),
+        Just(Flood::WrongPlan),
+        Just(Flood::Arm),
+    ]
 }
 
 fn servo_fault() -> impl Strategy<Value = ServoFault> {
@@ -128,8 +177,11 @@ impl ReferenceStateMachine for Steps {
             2 => mode.prop_map(Step::Ready),
             2 => Just(Step::Ask),
             1 => any::<u16>().prop_map(Step::PlanRead),
-            2 => (0usize..8, any::<bool>()).prop_map(|(at, own)| Step::Chunk(at, own)),
-            1 => any::<bool>().prop_map(Step::Store),
+            2 => (0usize..8, upload()).prop_map(|(at, which)| Step::Chunk(at, which)),
+            1 => upload().prop_map(Step::Store),
+            1 => (flood(), 10.0..150.0).prop_map(|(what, ms)| Step::Flood(what, ms)),
+            3 => prop_oneof![16 => 508u16..517, 1 => 400u16..624, 1 => 0u16..1024]
+                .prop_map(Step::Gyro),
             1 => any::<bool>().prop_map(Step::List),
             1 => (0u8..32).prop_map(Step::Button),
             1 => prop_oneof![3 => Just(9.6), 1 => 7.0..12.0].prop_map(Step::Supply),
@@ -143,7 +195,10 @@ impl ReferenceStateMachine for Steps {
             1 => prop_oneof![3 => Just(None), 1 => (10u64..400).prop_map(Some)]
                 .prop_map(Step::Noise),
             1 => prop::collection::vec(any::<u8>(), 0..20).prop_map(Step::Garbage),
-            1 => prop_oneof![Just(1u8), Just(4), Just(8)].prop_map(Step::Restart),
+            1 => prop_oneof![
+                4 => prop_oneof![Just(1u8), Just(4), Just(8)].prop_map(Step::Restart),
+                1 => any::<bool>().prop_map(Step::Flash),
+            ],
         ]
         .boxed()
     }
