@@ -9,8 +9,6 @@
 
 pub mod deploy;
 pub mod lab;
-pub mod link;
-pub mod paper;
 #[cfg(feature = "virtual-cm5")]
 pub mod robot_demo;
 
@@ -23,3 +21,5 @@ pub use handstand_model::{dynamics, effects, error, model, motion, output};
 pub use handstand_report as report;
 pub use handstand_report::plot;
 pub use handstand_sim::{compare, fitting, sim};
+pub use handstand_paper as paper;
+pub use handstand_link as link;

@@ -37,7 +37,33 @@ impl<L: SerialLink> SerialLink for Cut<L> {
         Ok(0)
     }
 
-    crate::link::port::left_to_inner!();
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn baud(&self) -> u32 {
+        self.inner.baud()
+    }
+
+    fn set_baud(&mut self, baud: u32) -> Result<()> {
+        self.inner.set_baud(baud)
+    }
+
+    fn clear(&mut self) -> Result<()> {
+        self.inner.clear()
+    }
+
+    fn now(&self) -> Duration {
+        self.inner.now()
+    }
+
+    fn pause(&mut self, time: Duration) {
+        self.inner.pause(time);
+    }
+
+    fn latency(&self) -> Duration {
+        self.inner.latency()
+    }
 }
 
 /// A robot that is balanced, its true states, and how its line is cut.
