@@ -37,7 +37,9 @@ mod tap;
 pub mod virtual_cm5;
 
 use handstand_logs as log;
-use handstand_model::{error, model};
+use handstand_model::error;
+#[cfg(feature = "virtual-cm5")]
+use handstand_model::model;
 #[cfg(feature = "virtual-cm5")]
 use handstand_sim::sim;
 

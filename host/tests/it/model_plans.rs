@@ -4,7 +4,7 @@
 use crate::common::{Bench, Ran};
 use std::fmt::Write as _;
 
-const CLEAN: &str = include_str!("../../src/deploy/basis/robot.toml");
+const CLEAN: &str = include_str!("../../robot/src/deploy/basis/robot.toml");
 /// Starts, degrees off in each joint.
 const LEANS: [&str; 10] = [
     "1/-1/1",

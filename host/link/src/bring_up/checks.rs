@@ -2,8 +2,8 @@
 
 use super::steps::Check;
 use super::{Person, StepOutcome, unknowns};
-use crate::error::{Error, Result};
 use crate::bridge::bridged;
+use crate::error::{Error, Result};
 use crate::{SerialLink, Session, cause_words, condition_words, fault_log};
 use handstand_shared::control_table::{
     GOAL_POSITION, MOVING_SPEED, PRESENT_POSITION, TORQUE_ENABLE, TORQUE_LIMIT,

@@ -2,8 +2,8 @@
 
 use super::StepOutcome;
 use super::checks::{Found, stream, streaming, telemetry};
-use crate::error::Result;
 use crate::bridge::bridged;
+use crate::error::Result;
 use crate::{SerialLink, Session};
 use handstand_shared::control_table::LED;
 use handstand_shared::dynamixel::{BROADCAST, Request};

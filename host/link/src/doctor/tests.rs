@@ -189,9 +189,7 @@ fn twins_that_answer_a_ping_alike_are_told_by_their_readings() {
 
 #[test]
 fn a_model_that_is_not_known_is_named_and_not_read() {
-    let mut bus = crate::virtual_cm5::spec("ids=1-2,delay=0")
-        .unwrap()
-        .bus();
+    let mut bus = crate::virtual_cm5::spec("ids=1-2,delay=0").unwrap().bus();
     bus.servos[1].set(handstand_shared::control_table::MODEL, 1_000);
     let link = SimLink(AdapterPort::new(bus));
     let diagnosis = examine(link, &[1, 2], None, |_| ()).unwrap();

@@ -5,8 +5,8 @@ use super::group_adapter::GroupAdapter;
 use super::latency::no_response;
 use super::source::SampleSource;
 use super::stream::Stream;
-use crate::error::Result;
 use crate::bridge::bridged;
+use crate::error::Result;
 use crate::{Answering, OneServo, Protocol, SerialLink, Servos, Session, SessionError};
 use std::time::Duration;
 

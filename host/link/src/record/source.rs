@@ -2,8 +2,8 @@
 
 use super::reach::GoalRange;
 use super::sample::RobotSample;
-use crate::error::Result;
 use crate::LineWriter;
+use crate::error::Result;
 use std::time::Duration;
 
 /// Switches torque off, whatever else is going on.

@@ -1,7 +1,7 @@
 //! Simulated serial ports as links.
 
-use crate::error::Result;
 use crate::SerialLink;
+use crate::error::Result;
 use handstand_cm5_sim::{AdapterPort, SimulatedPort};
 use std::time::Duration;
 

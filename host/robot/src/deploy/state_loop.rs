@@ -60,7 +60,7 @@ mod tests {
     /// The paper's weights on differences: known to be unstable, and far from it.
     #[test]
     fn the_paper_s_weights_are_unstable_on_differences() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/handstand.toml");
         let model = Model::load(file.as_ref()).unwrap();
         let timing = BoardTiming::HOST_ATTITUDE;
         let none = ToldDrives::default();

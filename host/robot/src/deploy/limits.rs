@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     fn limits(timing: &BoardTiming, board: &Board) -> Vec<ModeLimit> {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/handstand.toml");
         mode_limits(&Model::load(file.as_ref()).unwrap(), board, timing).unwrap()
     }
 

@@ -74,7 +74,7 @@ type Standing = (
 );
 
 fn standing() -> Standing {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/handstand.toml");
     let spec = spec(&format!("ids=1-18,delay=0,robot={file},start=held")).unwrap();
     let mut bus = set_up(&spec).unwrap();
     let (tell, states) = channel();

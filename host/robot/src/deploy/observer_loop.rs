@@ -127,7 +127,7 @@ mod tests {
     }
 
     fn robot() -> Model {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/models/handstand.toml");
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/handstand.toml");
         Model::load(file.as_ref()).unwrap()
     }
 
