@@ -7,7 +7,6 @@
 //! `deploy`; `cli` sits on top and nothing depends on it. Every layer may read `error`, and
 //! `output`, which writes files, numbers and plots.
 
-pub mod lab;
 
 pub use handstand_challenge as challenge;
 pub use handstand_control::{study, synth, sysid};
@@ -23,3 +22,4 @@ pub use handstand_robot::deploy;
 #[cfg(feature = "virtual-cm5")]
 pub use handstand_robot::robot_demo;
 pub use handstand_sim::{compare, fitting, sim};
+pub use handstand_lab as lab;
