@@ -1,6 +1,7 @@
 //! Measurement logs: one reader for every format, quality check, training and held-out motions.
 
 mod bam;
+#[cfg(feature = "ros")]
 pub mod cdr;
 mod cell;
 pub mod check;
@@ -14,6 +15,7 @@ mod iso;
 mod layout;
 mod lines;
 mod log_set;
+#[cfg(feature = "ros")]
 pub mod mcap_messages;
 mod merge;
 mod raw;

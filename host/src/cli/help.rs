@@ -38,9 +38,12 @@ pub fn grouped(command: Command) -> Command {
     for (title, names) in GROUPS {
         let _ = writeln!(text, "{header}{title}:{header:#}");
         for name in names {
+            // A build may leave a command out.
+            let Some(command) = command.find_subcommand(name) else {
+                continue;
+            };
             let about = command
-                .find_subcommand(name)
-                .and_then(Command::get_about)
+                .get_about()
                 .map(ToString::to_string)
                 .unwrap_or_default();
             let _ = writeln!(text, "  {literal}{name:<width$}{literal:#}  {about}");

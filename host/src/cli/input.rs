@@ -131,6 +131,7 @@ pub fn warn(findings: &[LogFinding], talk: &Talk) {
 }
 
 /// A model or a log, whichever comes, its error with the remedy.
+#[cfg(feature = "lab")]
 pub fn file(text: &str) -> Result<LogRequest, String> {
     text.parse().map_err(said)
 }

@@ -32,6 +32,7 @@ mod import;
 mod init;
 mod input;
 mod interrupt;
+#[cfg(feature = "lab")]
 mod lab;
 mod latency;
 mod log;
@@ -158,6 +159,7 @@ pub enum Command {
     /// Demonstrate compare, diagnose and add on a virtual bench
     Demo(demo::DemoArgs),
     /// Compare, diagnose and improve a model in a browser
+    #[cfg(feature = "lab")]
     Lab(lab::LabArgs),
     /// Scan, configure, monitor, back up and diagnose servos on a bus
     #[command(subcommand)]
@@ -215,6 +217,7 @@ impl Command {
             Command::Delays(args) => delays::run(args, talk),
             Command::Robust(args) => robust::run(args, talk),
             Command::Demo(args) => demo::run(args, talk),
+            #[cfg(feature = "lab")]
             Command::Lab(args) => lab::run(args, talk),
             Command::Bus(command) => bus::run(command, talk),
             Command::Excite(args) => excite::run(args, talk),

@@ -32,6 +32,7 @@ pub type AnyLink = Box<dyn SerialLink>;
 
 impl Port {
     /// The port of this name.
+    #[cfg(feature = "lab")]
     pub fn named(name: &str, baud: Option<u32>) -> Port {
         Port {
             port: Some(name.to_string()),

@@ -90,7 +90,7 @@ fn the_worked_examples_of_contributing_compile() {
     let files: BTreeSet<&str> = blocks.iter().map(|block| block.file.as_str()).collect();
     for list in [
         "host/model/src/effects/mod.rs",
-        "host/src/synth/controllers/mod.rs",
+        "host/control/src/synth/controllers/mod.rs",
     ] {
         assert!(files.contains(list), "no example changes {list}: {files:?}");
     }

@@ -22,6 +22,9 @@ pub const CHECKS: &[Check] = &[
             "warnings",
         ])
     }),
+    ("cargo check --no-default-features", || {
+        runs(&["check", "--package", "handstand", "--no-default-features"])
+    }),
     ("cargo doc", || runs(&["doc", "--workspace", "--no-deps"])),
 ];
 

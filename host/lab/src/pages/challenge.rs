@@ -1,8 +1,8 @@
 //! Rounds with a hidden effect: the one that is open, the score, the history.
 
 use super::{frame, in_mrad};
-use crate::session::{LabSession, Round, RoundResult, SessionStore};
 use crate::output::number::{NONE, exact};
+use crate::session::{LabSession, Round, RoundResult, SessionStore};
 use maud::{Markup, html};
 
 /// The page.

@@ -2,10 +2,10 @@
 
 use super::{evaluated, frame, in_milli};
 use crate::compare::{Failure, SignalError};
-use crate::reply::LabError;
-use crate::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation};
 use crate::output::number::{mrad, percent, short};
 use crate::plot::{Bar, Tone};
+use crate::reply::LabError;
+use crate::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation};
 use maud::{Markup, html};
 
 /// The page.

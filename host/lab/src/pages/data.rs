@@ -3,11 +3,9 @@
 use super::frame;
 use super::{data_model, new_model};
 use crate::error::Result;
-use crate::session::{
-    EXAMPLES, LabSession, LogFacts, MODEL_ENDINGS, MOST_BYTES, SavedSession,
-};
 use crate::log::{LogFinding, LogFormat, Severity};
 use crate::output::number::NONE;
+use crate::session::{EXAMPLES, LabSession, LogFacts, MODEL_ENDINGS, MOST_BYTES, SavedSession};
 use maud::{Markup, html};
 
 /// The page.

@@ -1,9 +1,9 @@
 //! The model on the data page: its columns, its text, the form of a new one.
 
 use super::new_model;
-use crate::session::{LabSession, SavedSession};
 use crate::log::RawLog;
 use crate::model::{Column, ColumnMean, Dimension, Model};
+use crate::session::{LabSession, SavedSession};
 use maud::{Markup, html};
 
 /// The model's sections.

@@ -7,13 +7,13 @@ use super::progress::progress;
 use super::what_if::own_paths;
 use super::{evaluated, frame};
 use crate::fitting::Horizon;
+use crate::model::{Model, ParameterPath};
+use crate::output::number::{NONE, exact, short, unit};
 use crate::reply::LabError;
 use crate::session::{
     CardRole, ChosenWindow, LabSession, SavedCard, SavedDiagnosis, SavedProposal, SavedSession,
     SessionEvaluation, over, value_name,
 };
-use crate::model::{Model, ParameterPath};
-use crate::output::number::{NONE, exact, short, unit};
 use maud::{Markup, html};
 
 /// The page.

@@ -3,13 +3,13 @@
 use crate::compare::residual_variables;
 use crate::effects::signature::signature;
 use crate::effects::{Effect, named};
+use crate::output::number::short;
+use crate::plot::{Chart, Curve, Tone};
+use crate::report::signature_chart;
 use crate::session::{
     CardRole, SavedCard, SavedSession, SessionEvaluation, effect_name, effect_of, listed,
     value_name,
 };
-use crate::output::number::short;
-use crate::plot::{Chart, Curve, Tone};
-use crate::report::signature_chart;
 use maud::{Markup, html};
 
 /// Dots of a small picture of the residual.

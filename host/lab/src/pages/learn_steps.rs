@@ -2,9 +2,9 @@
 
 use super::{in_milli, values};
 use crate::error::Result;
-use crate::session::{LabSession, SavedSession, SavedStep, SessionEvaluation};
 use crate::output::number::{NONE, percent};
 use crate::plot::{Bar, Tone, largest};
+use crate::session::{LabSession, SavedSession, SavedStep, SessionEvaluation};
 use maud::{Markup, html};
 use std::sync::Arc;
 

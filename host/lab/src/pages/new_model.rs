@@ -1,8 +1,8 @@
 //! The form of a new model, filled with what the first log tells, as `handstand init` guesses it.
 
 use super::progress::progress;
-use crate::session::{LabSession, SavedSession};
 use crate::log::init::Draft;
+use crate::session::{LabSession, SavedSession};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 

@@ -1,7 +1,7 @@
 //! How far long work is: one bar, the best so far in words and picture, and what ends it.
 
-use crate::session::ShownUnit;
 use crate::plot::{Bar, Tone};
+use crate::session::ShownUnit;
 use maud::{Markup, html};
 
 /// The box, which a script shows while something runs; errors of the best so far are in `unit`.

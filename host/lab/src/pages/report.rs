@@ -1,8 +1,8 @@
 //! What the lab adds to a report: the diagnosis as its title, values, notes.
 
 use super::values;
-use crate::session::{SavedSession, SavedStep};
 use crate::report::page::Section;
+use crate::session::{SavedSession, SavedStep};
 use maud::{Markup, html};
 
 /// The verdict in a sentence, where there is one; else what was compared.

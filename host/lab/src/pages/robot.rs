@@ -3,8 +3,8 @@
 use super::{evaluated, frame, robot_live};
 use crate::live::LiveRobot;
 use crate::reply::LabError;
-use crate::session::LabSession;
 use crate::report::playback::{Scene, stage};
+use crate::session::LabSession;
 use maud::{DOCTYPE, Markup, html};
 
 /// The page; a page of its own in a frame, so that its keys do not meet those of the lab.

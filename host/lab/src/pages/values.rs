@@ -1,7 +1,7 @@
 //! Fitted values with their 95 % intervals and units.
 
-use crate::session::{SavedStep, SavedValue, value_name};
 use crate::output::number::{exact, interval, unit};
+use crate::session::{SavedStep, SavedValue, value_name};
 use maud::{Markup, html};
 
 /// The table of what a step's fit gave; nothing where it had none.

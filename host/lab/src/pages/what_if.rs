@@ -5,9 +5,9 @@ use super::{evaluated, frame, in_milli};
 use crate::diagnose::candidates;
 use crate::effects::Parameter;
 use crate::fitting::Candidate;
+use crate::model::{JointField, Link, LinkField, Model, ParameterPath};
 use crate::reply::LabError;
 use crate::session::{LabSession, SessionEvaluation, value_name};
-use crate::model::{JointField, Link, LinkField, Model, ParameterPath};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 

@@ -4,14 +4,12 @@ use super::arrays::Arrays;
 use super::shown_model::ShownModel;
 use super::{act, blocking, said_shortly, session};
 use crate::error::{Error, Place};
+use crate::log::RawLog;
+use crate::model::edit::{ColumnChoice, set_log_columns};
 use crate::pages::data as pages;
 use crate::reply::{Answer, LabError, data as reply, page};
 use crate::server::LabState;
-use crate::session::{
-    EXAMPLES, LabSession, LogPart, MOST_BYTES, SavedStep, SessionFile, is_model,
-};
-use crate::log::RawLog;
-use crate::model::edit::{ColumnChoice, set_log_columns};
+use crate::session::{EXAMPLES, LabSession, LogPart, MOST_BYTES, SavedStep, SessionFile, is_model};
 use axum::Json;
 use axum::body::{Body, to_bytes};
 use axum::extract::{Path, Query, State};

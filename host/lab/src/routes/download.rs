@@ -1,12 +1,12 @@
 //! What a person takes along: the model, the report, the next motion, the session.
 
 use super::{blocking, session};
+use crate::motion::Split;
 use crate::pages::report as pages;
 use crate::reply::{Answer, LabError, download as file};
+use crate::report::{HashedModel, Report, ReportProvenance, html_with};
 use crate::server::LabState;
 use crate::session::{LabSession, MOTION_FILE, SavedSession};
-use crate::motion::Split;
-use crate::report::{HashedModel, Report, ReportProvenance, html_with};
 use axum::extract::{Path, State};
 use std::sync::Arc;
 

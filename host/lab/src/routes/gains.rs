@@ -2,13 +2,13 @@
 
 use super::{blocking, session};
 use crate::error::{Error, Result};
-use crate::pages::gains as pages;
-use crate::reply::{Answer, LabError, data as reply, download, page};
-use crate::server::LabState;
-use crate::session::{LabSession, aside, in_degrees};
 use crate::model::Model;
 use crate::output::number::hex;
+use crate::pages::gains as pages;
+use crate::reply::{Answer, LabError, data as reply, download, page};
 use crate::report::{margins_json, verification_text};
+use crate::server::LabState;
+use crate::session::{LabSession, aside, in_degrees};
 use crate::study::{left_out, response, verify};
 use crate::synth::export::{self, Provenance};
 use crate::synth::{CostWeights, Design, LoopFigures, Request, Time, rows};

@@ -3,14 +3,28 @@
 //! Each becomes columns by name, which the model file then reads as it reads those of CSV. A value
 //! that is not there is not a number. Sizes that a file states are believed only as far as its
 //! bytes can bear them.
+#![cfg_attr(
+    not(all(feature = "matlab", feature = "parquet", feature = "ros")),
+    allow(
+        dead_code,
+        unused_variables,
+        reason = "what formats share is for those that are there"
+    )
+)]
 
+#[cfg(feature = "ros")]
 mod joint_states;
+#[cfg(feature = "matlab")]
 mod mat;
+#[cfg(feature = "ros")]
 mod mcap;
+#[cfg(feature = "parquet")]
 mod parquet;
+#[cfg(feature = "ros")]
 mod rosbag;
+#[cfg(feature = "ros")]
 mod sqlite;
-#[cfg(test)]
+#[cfg(all(test, feature = "matlab", feature = "parquet", feature = "ros"))]
 mod tests;
 
 use super::foreign::{HEAD, foreign};
@@ -82,10 +96,20 @@ impl LogTable {
         time: Option<&str>,
     ) -> Result<LogTable> {
         match format {
+            #[cfg(feature = "ros")]
             LogFormat::Mcap => mcap::read(&bytes, file),
+            #[cfg(feature = "matlab")]
             LogFormat::Mat => mat::read(bytes, file, time),
+            #[cfg(feature = "ros")]
             LogFormat::Rosbag => rosbag::read(&bytes, file),
+            #[cfg(feature = "parquet")]
             LogFormat::Parquet => parquet::read(bytes, file),
+            #[cfg(not(feature = "matlab"))]
+            LogFormat::Mat => Err(file.left_out("matlab")),
+            #[cfg(not(feature = "parquet"))]
+            LogFormat::Parquet => Err(file.left_out("parquet")),
+            #[cfg(not(feature = "ros"))]
+            LogFormat::Mcap | LogFormat::Rosbag => Err(file.left_out("ros")),
             LogFormat::Csv | LogFormat::Bam => Err(file.wrong("not a table", "name a log")),
         }
     }
@@ -106,6 +130,15 @@ impl TableFile<'_> {
     /// The file is refused.
     pub fn wrong(&self, what: impl Into<String>, remedy: impl Into<String>) -> Error {
         Error::data(Place::file(self.path), what, remedy)
+    }
+
+    /// Its format is one that this build cannot read.
+    #[cfg(not(all(feature = "matlab", feature = "parquet", feature = "ros")))]
+    fn left_out(&self, feature: &str) -> Error {
+        self.wrong(
+            "a format that this build leaves out",
+            format!("build it with the cargo feature `{feature}`, which is on by default"),
+        )
     }
 }
 
