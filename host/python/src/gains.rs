@@ -7,9 +7,12 @@ use crate::value::plain;
 use crate::work::{self, WorkReport};
 use handstand::fitting::Progress;
 use handstand::report::{gains_json, margins_json, margins_text, with_margins};
+use handstand::sim::closed_loop::Velocity;
 use handstand::study::{Verification, left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{CostWeights, Design, LoopFigures, Request, Time, Weight, balanced};
+use handstand::synth::{
+    CostWeights, Design, LoopFigures, Readings, Request, Time, Weight, balanced,
+};
 use nalgebra::DMatrix;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -46,6 +49,10 @@ pub struct Gains {
 ///     The pose, rad, an angle per joint; upright without.
 /// balance : bool
 ///     Take the balanced pose that is nearest.
+/// position_step_rad : float
+///     Step of the angles that the simulated law is given; the model's without.
+/// speeds : "true" or "difference"
+///     Its speeds: the true ones, or differences of those angles over the sampling time.
 /// progress : callable
 ///     Called as `progress(what, done, total)`.
 ///
@@ -54,9 +61,9 @@ pub struct Gains {
 /// Gains
 #[pyfunction]
 #[pyo3(signature = (model, *, q=None, r=None, ts_s=Some(0.01), delay_s=None, pose_rad=None,
-                    balance=false, progress=None),
+                    balance=false, position_step_rad=None, speeds="true", progress=None),
        text_signature = "(model, *, q=None, r=None, ts_s=0.01, delay_s=None, pose_rad=None, \
-                          balance=False, progress=None)")]
+                          balance=False, position_step_rad=None, speeds='true', progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub fn gains(
     py: Python<'_>,
@@ -67,6 +74,8 @@ pub fn gains(
     delay_s: Option<f64>,
     pose_rad: Option<&Bound<'_, PyAny>>,
     balance: bool,
+    position_step_rad: Option<f64>,
+    speeds: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Gains> {
     let model = model.borrow().clone();
@@ -92,8 +101,23 @@ pub fn gains(
     if balance {
         pose_rad = balanced(&model.inner, &pose_rad).map_err(exception)?;
     }
+    let speeds = match speeds {
+        "true" => Velocity::Direct,
+        "difference" => Velocity::Difference,
+        other => {
+            let what = format!("speeds={other:?}");
+            return Err(usage(what, "give \"true\" or \"difference\""));
+        }
+    };
+    if position_step_rad.is_some_and(|step| !(step > 0.0 && step.is_finite())) {
+        return Err(usage("position_step_rad is no positive number", "give rad"));
+    }
     let request = Request {
         pose_rad,
+        readings: Readings {
+            position_step_rad,
+            speeds,
+        },
         weights,
         time: match ts_s {
             Some(ts_s) => Time::Sampled { ts_s, delay_s },

@@ -26,9 +26,21 @@ def test_sampled_gains_stabilise_the_simulated_loop() -> None:
     assert said["region_open"] == found.region_open
     assert said["stays_uncontrolled"] == found.stays_uncontrolled
     assert "#include" in found.c_header() and "WALK_STATES" in found.c_header("walk")
-    assert 0.7 < found.margins["inputs"]["common"]["gain"][0] < 1.0
+    least = found.margins["inputs"]["common"]["gain"][0]
+    paper = hs.gains(hs.Model.load(HANDSTAND), q=100.0)
+    assert 0.3 < least < 0.5 < 0.7 < paper.margins["inputs"]["common"]["gain"][0] < 1.0
     assert found.to_dict()["margins"] == found.margins
     assert found.k.shape[1] == len(found.states) == len(found.x0)
+
+
+def test_the_simulated_law_is_given_what_sensors_give() -> None:
+    model = hs.Model.load(HANDSTAND)
+    coarse = hs.gains(model, position_step_rad=5e-3, speeds="difference")
+    said = coarse.to_dict()["verification"]
+    assert said["position_step_rad"] == 5e-3 and said["differences"]
+    for keywords in ({"speeds": "filtered"}, {"position_step_rad": -1.0}, {"r": 2.0}):
+        with pytest.raises(hs.UsageError, match="remedy"):
+            hs.gains(model, **keywords)
 
 
 def test_a_weight_of_the_wrong_size_is_refused() -> None:

@@ -19,10 +19,16 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
     let mut lines = vec![
         format!("\n{}", law(verified)),
         format!(
-            "Simulated with every effect of the model, 5 s from {} random starts within 0.5 \
-             deg{}: {}.",
+            "Simulated with every effect of the model, 5 s from {} random starts within {} deg{}{}: \
+             {}.",
             near.runs,
-            also_mm(0.5f64.to_radians()),
+            (10.0 * verified.near_rad.to_degrees()).round() / 10.0,
+            also_mm(verified.near_rad),
+            if verified.near_rad > 0.51_f64.to_radians() {
+                ", for nearer friction holds it by itself"
+            } else {
+                ""
+            },
             verdict(verified)
         ),
     ];

@@ -6,18 +6,21 @@
 //! Unstable is a robot whose loop has a spectral radius not below 1. The design sees no draw, so
 //! every seed is fresh. Drives are as late as the model has them, and the gains made for it know.
 //!
-//! `--plan FILE` judges gains of your own: what `handstand gains --json` printed.
+//! `--plan FILE` judges gains of your own, what `handstand gains --json` printed; `--q` and `--r` those
+//! of your weights.
 //!
 //! ```console
 //! $ handstand robust handstand.toml
 //! ```
 //!
-//! Exit code 1 when the multi-model gain, or with `--plan` yours, leaves more than 2 % unstable.
+//! Exit code 1 when the multi-model gain, or yours if there is one, leaves more than 2 % unstable.
 //! `--json` prints a list of `gain`, `unstable`, `median_radius`, `worst_radius`, `largest_error`
 //! (at which 2 % are unstable) and `k`, by rows.
 
 mod plan;
 
+use super::gains::of_options;
+use super::weight_arg::{WeightArg, weight};
 use super::{ExitStatus, Talk, input, show};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
@@ -52,7 +55,16 @@ pub struct RobustArgs {
     design: f64,
     /// Weight of every state in that design
     #[arg(long, value_name = "Q", default_value_t = WEIGHT, value_parser = input::positive)]
-    q: f64,
+    design_q: f64,
+    /// Judge the regulator of these weights, too: of the states, a number, a diagonal, or a CSV file
+    /// of a matrix
+    #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "plan")]
+    q: Option<WeightArg>,
+    /// Weight of the torques in it, likewise [default: 1]
+    #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
+    #[arg(requires = "q")]
+    r: Option<WeightArg>,
     /// Robots drawn
     #[arg(long, value_name = "N", default_value_t = 2000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
@@ -88,13 +100,21 @@ pub fn run(args: &RobustArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     let gains = judged(args, &Model::load(&args.model)?, talk)?;
     talk.result(&gains, || text(args, &gains))?;
-    let judged = match args.plan {
-        Some(_) => gains.first(),
-        None => gains.last(),
+    let judged = if args.own() {
+        gains.first()
+    } else {
+        gains.last()
     };
     Ok(ExitStatus::answer(
         judged.is_some_and(|gain| gain.unstable <= UNSTABLE),
     ))
+}
+
+impl RobustArgs {
+    /// Whether a gain of one's own is judged, which comes first.
+    fn own(&self) -> bool {
+        self.plan.is_some() || self.q.is_some()
+    }
 }
 
 fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobustness>> {
@@ -105,31 +125,39 @@ fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobus
         draws: args.draws as usize,
         seed: args.seed,
     };
-    let bar = talk.bar(4 + u64::from(args.plan.is_some()));
+    let bar = talk.bar(4 + u64::from(args.own()));
     bar.set_message("drawing robots");
     let plants = errors.plants(args.masses / 100.0)?;
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;
     let sampled = zoh(&nominal.plant, args.ts, nominal.delay_s)?;
-    let regulator = |q: f64| {
-        let q = Weight::Scalar(q);
+    let regulator = |q: Weight, r: Weight| {
         let own = nominal.clone();
-        let (q, r) = DesignModel { q, ..own }.weights()?;
+        let (q, r) = DesignModel { q, r, ..own }.weights()?;
         Ok::<_, Error>(dlqr(&sampled, &q, &r)?.k)
     };
+    let equal = |q: f64| regulator(Weight::Scalar(q), Weight::Scalar(1.0));
     let multi = MultiModel {
         mass_error: args.design / 100.0,
         with_inertia: args.with_inertia,
-        weight: args.q,
+        weight: args.design_q,
     };
     let title = format!("multi-model, {} % of each mass", exact(args.design));
     let mut gains = vec![
-        ("DLQR, Q = 100 I, R = I".to_string(), regulator(100.0)?),
-        ("DLQR, Q = I, R = I".to_string(), regulator(1.0)?),
+        ("DLQR, Q = 100 I, R = I".to_string(), equal(100.0)?),
+        ("DLQR, Q = I, R = I".to_string(), equal(1.0)?),
         (title, multi.gain(&nominal, nominal.delay_s)?),
     ];
     if let Some(file) = &args.plan {
         let k = plan::gain(file, model, &sampled, args.ts)?;
         gains.insert(0, (file.display().to_string(), k));
+    }
+    if let Some(q) = &args.q {
+        let q = q.read()?;
+        let r = args.r.as_ref().map(WeightArg::read).transpose()?;
+        let r = r.unwrap_or(Weight::Scalar(1.0));
+        let title = format!("DLQR, Q = {q}, R = {r}");
+        let k = regulator(q, r).map_err(of_options)?;
+        gains.insert(0, (title, k));
     }
     bar.inc(1);
     let judge = |(gain, k): (String, DMatrix<f64>)| {

@@ -99,6 +99,29 @@ fn robust_has_the_model_s_delay_and_takes_gains_of_a_file() {
 }
 
 #[test]
+fn robust_judges_the_regulator_of_one_s_weights() {
+    let bench = bench();
+    let judged = |weights: &str| {
+        bench.run(&format!(
+            "robust handstand.toml --draws 200 --json {weights}"
+        ))
+    };
+    // The paper's robot: 20 % of its robots fall with the paper's weights, none with these.
+    let own = judged("--q 1,1,1,0.01,0.01,0.01");
+    assert_eq!(own.code, Some(0), "{own:?}");
+    assert_eq!(own.json()[0]["unstable"], 0.0, "{own:?}");
+    assert_eq!(own.json().as_array().unwrap().len(), 4);
+    let paper = judged("--q 100 --r 1");
+    assert_eq!(paper.code, Some(1), "{paper:?}");
+    assert_eq!(paper.json()[0]["unstable"], paper.json()[1]["unstable"]);
+    for (weights, said) in [("--q 1,2", "Q has 2 values"), ("--r 2", "--q <WEIGHT>")] {
+        let refused = judged(weights);
+        assert_eq!(refused.code, Some(2), "{refused:?}");
+        assert!(refused.stderr.contains(said), "{}", refused.stderr);
+    }
+}
+
+#[test]
 fn one_sample_of_delay_is_too_much_for_the_paper_s_gains() {
     let ran = bench().run(
         "delays handstand.toml --controller dlqr --controller lqg --robots 0 --until-ms 40 --json",

@@ -24,8 +24,6 @@ use table::Table;
 
 /// Length of a run, s.
 pub const SECONDS: f64 = 15.0;
-/// Starts are within this of upright in each joint, rad: half a degree.
-const START_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
 /// Share of the runs that have to stand.
 const ENOUGH: f64 = 0.95;
 
@@ -63,8 +61,9 @@ impl Judged {
 pub fn judge(robot: Robot, runs: usize, seed: u64) -> Result<Judged, String> {
     let (verified, table) = designed(&robot)?;
     let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let most_rad = verified.near_rad;
     let starts: Vec<[f64; 3]> = (0..runs)
-        .map(|_| std::array::from_fn(|_| random.random_range(-START_RAD..=START_RAD)))
+        .map(|_| std::array::from_fn(|_| random.random_range(-most_rad..=most_rad)))
         .collect();
     let share = |table: Option<&Table>| {
         let stands = |start: &&[f64; 3]| Simulation::new(&robot, **start).stands(table, SECONDS);

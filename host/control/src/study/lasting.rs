@@ -16,7 +16,7 @@ const LAST_S: f64 = 10.0;
 /// How a robot stands in the long run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Lasting {
-    /// Runs from starts within half a degree.
+    /// Runs from starts near the pose.
     pub runs: usize,
     /// How many of them are stabilised at the end.
     pub stabilised: usize,

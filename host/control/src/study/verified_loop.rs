@@ -25,8 +25,14 @@ const LASTING_RUNS: u64 = 20;
 /// Length of a run, s.
 const SECONDS: f64 = 5.0;
 
-/// Starts of the run whose figures are given, rad: within half a degree.
-pub(super) const NEAR_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
+/// Starts of the runs whose figures are given, rad: within half a degree, ..
+const NEAR_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
+
+/// .. or this many times doubled, to 8 deg.
+pub(super) const DOUBLINGS: u32 = 4;
+
+/// A pole of the plant beyond this grows, 1/s: slides along a level rail have theirs at 0.
+const FALLS_1_S: f64 = 1e-6;
 
 /// Which law of a design is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -130,9 +136,32 @@ impl<'a> VerifiedLoop<'a> {
         figures
     }
 
-    /// Longer runs from the first of the starts near the pose.
-    pub fn lasting(&self, closed: &ClosedLoop) -> Lasting {
-        let starts = self.starts(NEAR_RAD, LASTING_RUNS);
+    /// Spread of the starts that the verdict is from, rad: half a degree; of a plant that falls by
+    /// itself and that friction holds there, the least of its doublings where friction does not. Half
+    /// a degree again where it holds the robot wherever it looks.
+    pub fn near_rad(&self, closed: &ClosedLoop) -> f64 {
+        let held = |spread_rad: f64| {
+            let figures = self.figures(closed, &self.no_law(), spread_rad);
+            figures.stabilised_share >= STABILISED_SHARE
+        };
+        if !self.falls() {
+            return NEAR_RAD;
+        }
+        let spreads = (0..=DOUBLINGS).map(|times| NEAR_RAD * f64::from(1 << times));
+        spreads
+            .into_iter()
+            .find(|spread_rad| !held(*spread_rad))
+            .unwrap_or(NEAR_RAD)
+    }
+
+    /// Whether the linear plant would fall.
+    pub fn falls(&self) -> bool {
+        self.design.poles.iter().any(|pole| pole.re > FALLS_1_S)
+    }
+
+    /// Longer runs from the first of the starts within a spread.
+    pub fn lasting(&self, closed: &ClosedLoop, spread_rad: f64) -> Lasting {
+        let starts = self.starts(spread_rad, LASTING_RUNS);
         let lasting = Lasting::of(self.model, closed, self.law(), &starts);
         (self.done)();
         lasting

@@ -5,7 +5,7 @@ use super::ellipsoid::{ELLIPSOID_JUDGEMENTS, Ellipsoid};
 use super::judge::{Figures, STABILISED_SHARE};
 use super::lasting::Lasting;
 use super::region::{REGION_JUDGEMENTS, Region};
-use super::verified_loop::{NEAR_RAD, VerifiedLaw, VerifiedLoop};
+use super::verified_loop::{DOUBLINGS, VerifiedLaw, VerifiedLoop};
 use crate::effects::Effect;
 use crate::error::Result;
 use crate::model::{EffectInstance, Model};
@@ -22,17 +22,14 @@ const CALMER: f64 = 0.5;
 /// .. if it is larger than this at all, rad: 0.2 deg.
 const LEAST_SWING_RAD: f64 = 0.2 * std::f64::consts::PI / 180.0;
 
-/// A pole of the plant beyond this grows, 1/s: slides along a level rail have theirs at 0.
-const FALLS_1_S: f64 = 1e-6;
-
 /// A torque counts as smaller below this share.
 const EASIER: f64 = 0.8;
 
 /// What the simulated loop does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verification {
-    /// The verdict: 95 % of the starts within half a degree of the pose are stabilised, and stay so
-    /// for longer ([`Verification::lasting`]), by the law and not by friction
+    /// The verdict: 95 % of the starts near the pose ([`Verification::near_rad`]) are stabilised, and
+    /// stay so for longer ([`Verification::lasting`]), by the law and not by friction
     /// ([`Verification::held`]).
     pub stabilised: bool,
     /// Which law ran.
@@ -42,6 +39,9 @@ pub struct Verification {
     /// Whether its speeds were differences of the measured angles; else they are exact, or a
     /// filter's.
     pub differences: bool,
+    /// Largest departure of a joint in those starts, rad: half a degree, or more where friction alone
+    /// holds a robot there that would fall by itself.
+    pub near_rad: f64,
     /// Figures of those starts.
     pub near: Figures,
     /// Longer runs from the same starts: in which manner the robot stands.
@@ -77,7 +77,7 @@ pub struct Without {
     pub effect: &'static str,
     /// Its joint, counted from 1; none for the whole rig.
     pub joint: Option<usize>,
-    /// Whether 95 % of the starts within half a degree are stabilised without it.
+    /// Whether 95 % of the starts near the pose are stabilised without it.
     pub stabilised: bool,
     /// Median limit cycle of those, peak to peak, rad.
     pub limit_cycle_rad: Option<f64>,
@@ -174,7 +174,7 @@ pub fn verification_steps(left_out: &[UndesignedEffect]) -> usize {
         count @ 0..2 => 1 + count,
         count => 2 + count,
     };
-    3 + left_out.len() + regions * REGION_JUDGEMENTS + ELLIPSOID_JUDGEMENTS
+    4 + DOUBLINGS as usize + left_out.len() + regions * REGION_JUDGEMENTS + ELLIPSOID_JUDGEMENTS
 }
 
 /// Simulates the loop of a design from random starts around its pose, the same every time: the law
@@ -193,14 +193,15 @@ pub fn verify(
 ) -> Result<Verification> {
     let tested = VerifiedLoop::new(model, design, request, done);
     let closed = tested.closed_loop(&[])?;
-    let near = tested.figures(&closed, tested.law(), NEAR_RAD);
-    let uncontrolled = tested.figures(&closed, &tested.no_law(), NEAR_RAD);
-    let lasting = tested.lasting(&closed);
+    let near_rad = tested.near_rad(&closed);
+    let near = tested.figures(&closed, tested.law(), near_rad);
+    let uncontrolled = tested.figures(&closed, &tested.no_law(), near_rad);
+    let lasting = tested.lasting(&closed, near_rad);
     let region = tested.region(&[])?;
     let ellipsoid = tested.ellipsoid(&closed)?;
     let without: Vec<Without> = left_out
         .iter()
-        .map(|one| loop_without(&tested, one))
+        .map(|one| loop_without(&tested, one, near_rad))
         .collect::<Result<_>>()?;
     let as_designed = match without.as_slice() {
         [] => region,
@@ -211,14 +212,14 @@ pub fn verify(
         _ => tested.region(left_out)?,
     };
     let stays_uncontrolled = uncontrolled.stabilised_share >= STABILISED_SHARE;
-    let falls_by_itself = design.poles.iter().any(|pole| pole.re > FALLS_1_S);
-    let held = stays_uncontrolled && falls_by_itself;
+    let held = stays_uncontrolled && tested.falls();
     let stays = near.stabilised_share >= STABILISED_SHARE && lasting.is_stable();
     Ok(Verification {
         stabilised: stays && !held,
         law: VerifiedLaw::of(design),
         position_step_rad: closed.sensor.position_resolution_rad,
         differences: closed.sensor.velocity == Velocity::Difference,
+        near_rad,
         near,
         lasting,
         stays_uncontrolled,
@@ -234,9 +235,13 @@ pub fn verify(
 }
 
 /// The loop without one effect.
-fn loop_without(tested: &VerifiedLoop<'_>, one: &UndesignedEffect) -> Result<Without> {
+fn loop_without(
+    tested: &VerifiedLoop<'_>,
+    one: &UndesignedEffect,
+    near_rad: f64,
+) -> Result<Without> {
     let closed = tested.closed_loop(&[*one])?;
-    let near = tested.figures(&closed, tested.law(), NEAR_RAD);
+    let near = tested.figures(&closed, tested.law(), near_rad);
     let region = tested.region(&[*one])?;
     Ok(Without {
         effect: one.effect.info().id,
@@ -256,7 +261,8 @@ fn loop_without(tested: &VerifiedLoop<'_>, one: &UndesignedEffect) -> Result<Wit
 pub(super) fn figures_near(model: &Model, design: &Design, request: &Request) -> Result<Figures> {
     let tested = VerifiedLoop::new(model, design, request, &|| ());
     let closed = tested.closed_loop(&[])?;
-    Ok(tested.figures(&closed, tested.law(), NEAR_RAD))
+    let near_rad = tested.near_rad(&closed);
+    Ok(tested.figures(&closed, tested.law(), near_rad))
 }
 
 /// Figures of the starts near the pose, and the region, empty if those are not stabilised.
@@ -270,7 +276,8 @@ pub(super) fn stabilised_from(
 ) -> Result<(Figures, Region)> {
     let tested = VerifiedLoop::new(model, design, request, &|| ());
     let closed = tested.closed_loop(&[])?;
-    let near = tested.figures(&closed, tested.law(), NEAR_RAD);
+    let near_rad = tested.near_rad(&closed);
+    let near = tested.figures(&closed, tested.law(), near_rad);
     let region = if near.stabilised_share >= STABILISED_SHARE {
         tested.region(&[])?
     } else {

@@ -312,5 +312,7 @@ def gains(
     delay_s: float | None = None,
     pose_rad: ArrayLike | None = None,
     balance: bool = False,
+    position_step_rad: float | None = None,
+    speeds: Literal["true", "difference"] = "true",
     progress: _Progress | None = None,
 ) -> Gains: ...
