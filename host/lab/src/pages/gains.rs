@@ -82,6 +82,8 @@ fn shown() -> Markup {
                 a data-file="gains.h" href="#" { "C header" }
                 a data-file="gains.rs" href="#" { "Rust file" }
                 a data-file="gains.csv" href="#" { "K as CSV" }
+                a data-file="gains.html" href="#" target="_blank" rel="noopener" {
+                    "Page with pictures: responses, margins, poles, region" }
             }
             pre.commands #gains-command tabindex="0" {}
             button.small data-copy="#gains-command" { "Copy" }

@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::output::number::hex;
 use crate::pages::gains as pages;
-use crate::reply::{Answer, LabError, data as reply, download, page};
-use crate::report::{margins_json, verification_text};
+use crate::reply::{Answer, LabError, data as reply, download, page, typed};
+use crate::report::{GainsReport, gains_page, margins_json, verification_text};
 use crate::server::LabState;
 use crate::session::{LabSession, aside, in_degrees};
 use crate::study::{left_out, response, verify};
@@ -167,7 +167,7 @@ pub(super) async fn verified(
     .await
 }
 
-/// The law as a header, or for other programs.
+/// The law as a header, for other programs, or as a page with pictures, which takes seconds.
 pub(super) async fn file(
     State(lab): State<Arc<LabState>>,
     Path((number, what)): Path<(u32, String)>,
@@ -187,6 +187,23 @@ pub(super) async fn file(
             "gains.h" => {
                 let text = export::c_header(&design, fixed, &made, export::C_NAME);
                 Ok(download("text/plain; charset=utf-8", "gains.h", text))
+            }
+            "gains.html" => {
+                let request = asked.request(&model)?;
+                let left_out = left_out(&model, &model, &design);
+                let figures = LoopFigures::of(&model, &design).map_err(Error::from)?;
+                let page = aside(|| {
+                    let verified = verify(&model, &design, &request, &left_out, &|| ())?;
+                    gains_page(&GainsReport {
+                        model: &model,
+                        request: &request,
+                        design: &design,
+                        figures: figures.as_ref(),
+                        verified: &verified,
+                        made: &made,
+                    })
+                })?;
+                Ok(typed("text/html; charset=utf-8", page))
             }
             "gains.csv" => Ok(download("text/csv", "gains.csv", export::csv(&design))),
             _ => Err(LabError::NotFound("file")),

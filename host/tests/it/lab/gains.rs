@@ -100,3 +100,17 @@ fn the_page_says_what_the_command_says() {
             .contains("prove nothing of the gains")
     }));
 }
+
+/// The page that `gains --report` writes, for the sliders as they stand.
+#[test]
+fn a_page_with_pictures_is_there_to_take_along() {
+    let bench = Bench::new();
+    let model = models().into_iter().find(|m| m.ends_with("handstand.toml"));
+    let server = bench.lab(&model.unwrap());
+    let page = server.get("/s/1/gains-file/gains.html?states=1&speeds=10&ts_s=0.01");
+    assert_eq!(page.status, 200, "{}", page.text());
+    let page = page.text();
+    for said in ["0.645", "<svg", "--q 4,4,4,0.1,0.1,0.1", "stabilised"] {
+        assert!(page.contains(said), "{said}");
+    }
+}
