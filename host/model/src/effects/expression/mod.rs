@@ -1,9 +1,10 @@
 //! Effects that a model file defines by an expression: `torque = "-c * w * abs(w)"`.
 //!
 //! A definition becomes an [`Effect`] like those of the library and lives as long as the program;
-//! equal definitions are one effect. Parsing and evaluation are `exmex`'s.
+//! equal definitions are one effect.
 
 mod law;
+mod program;
 mod reason;
 mod syntax;
 
@@ -12,8 +13,8 @@ pub use reason::ExpressionReason;
 pub use syntax::{CONSTANTS, FUNCTIONS, Misplaced, VARIABLES};
 
 use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
-use exmex::{Express, FlatEx};
-use law::{Compiled, ExpressionLaw, Slot};
+use law::ExpressionLaw;
+use program::Program;
 use std::sync::{LazyLock, RwLock};
 
 /// Most different laws of one run of the program, which keeps each.
@@ -106,26 +107,13 @@ fn compiled(definition: &LawDefinition) -> Result<ExpressionLaw, DefinitionFault
         .iter()
         .map(|p| p.key.as_str())
         .collect();
-    let written = syntax::judged(&definition.torque, &keys).map_err(DefinitionFault::Torque)?;
-    let expression = FlatEx::<f64>::parse(&written).map_err(|error| {
-        let why = error.to_string();
-        let reason = ExpressionReason::NoLaw { why };
-        DefinitionFault::Torque(Misplaced { at: 0, reason })
-    })?;
-    let slot = |name: &String| match name.as_str() {
-        "q" => Slot::Angle,
-        "w" => Slot::Speed,
-        "tau" => Slot::Drive,
-        key => Slot::Value(keys.iter().position(|k| *k == key).unwrap_or(usize::MAX)),
-    };
-    let slots = expression.var_names().iter().map(slot).collect();
-    let compiled = Compiled { expression, slots };
+    let program = syntax::parsed(&definition.torque, &keys).map_err(DefinitionFault::Torque)?;
     let off: Vec<Option<f64>> = (0..keys.len())
-        .map(|i| off(&compiled, definition, i))
+        .map(|i| off(&program, definition, i))
         .collect();
     Ok(ExpressionLaw {
         info: info(definition, &off),
-        compiled,
+        program,
     })
 }
 
@@ -160,8 +148,8 @@ fn names(definition: &LawDefinition) -> Result<(), DefinitionFault> {
     let reserved = |key: &str| {
         let keys = ["kind", "joint", "fitted"]
             .into_iter()
-            .chain(FUNCTIONS)
-            .chain(CONSTANTS);
+            .chain(FUNCTIONS.map(|(name, _)| name))
+            .chain(CONSTANTS.map(|(name, _)| name));
         keys.chain(VARIABLES.map(|(name, _)| name))
             .any(|known| known == key)
     };
@@ -186,7 +174,7 @@ fn names(definition: &LawDefinition) -> Result<(), DefinitionFault> {
 }
 
 /// 0 for a parameter at whose zero the torque vanishes, whatever the joint does.
-fn off(law: &Compiled, definition: &LawDefinition, index: usize) -> Option<f64> {
+fn off(law: &Program, definition: &LawDefinition, index: usize) -> Option<f64> {
     let parameters = &definition.parameters;
     let (low, high) = parameters[index].bounds;
     if !(low..=high).contains(&0.0) {

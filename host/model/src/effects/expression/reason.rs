@@ -54,12 +54,6 @@ pub enum ExpressionReason {
     /// A law too long.
     #[error("the law is longer than 500 characters")]
     TooLong,
-    /// A law that the evaluator refuses all the same.
-    #[error("the law cannot be evaluated: {why}")]
-    NoLaw {
-        /// The evaluator's words.
-        why: String,
-    },
     /// A name that already means something.
     #[error("the name `{name}` is taken")]
     NameTaken {
@@ -95,7 +89,7 @@ impl Reason for ExpressionReason {
     fn remedy(&self) -> Cow<'_, str> {
         use ExpressionReason as R;
         match self {
-            R::OperandMissing | R::OperatorMissing | R::NoLaw { .. } => {
+            R::OperandMissing | R::OperatorMissing => {
                 "write it as -c * w * abs(w), with + - * / ^ and parentheses".into()
             }
             R::Unclosed => "close it, or remove it".into(),
@@ -107,7 +101,7 @@ impl Reason for ExpressionReason {
             R::UnknownName { known, .. } => {
                 let variables: Vec<&str> = VARIABLES.iter().map(|(name, _)| *name).collect();
                 let (variables, known) = (variables.join(", "), known.join(", "));
-                let functions = FUNCTIONS.join(", ");
+                let functions = FUNCTIONS.map(|(name, _)| name).join(", ");
                 format!("variables: {variables}; parameters: {known}; functions: {functions}; PI")
                     .into()
             }

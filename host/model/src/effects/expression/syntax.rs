@@ -1,10 +1,10 @@
-//! The grammar of a law: judged here, so that what is wrong has its place, evaluated by `exmex`.
+//! The grammar of a law: what is wrong has its place.
 //!
 //! A law is numbers, variables and parameters joined by `+ - * / ^`, parentheses, and functions of
 //! one argument. There is nothing else: no assignment, no loop, no access to anything.
 
+use super::program::{Node, Program, Slot};
 use super::reason::ExpressionReason;
-use std::fmt::Write as _;
 
 /// Variables of a law, and what they are.
 pub const VARIABLES: [(&str, &str); 3] = [
@@ -13,12 +13,24 @@ pub const VARIABLES: [(&str, &str); 3] = [
     ("tau", "torque of the joint's drive, N m"),
 ];
 /// Functions of a law.
-pub const FUNCTIONS: [&str; 14] = [
-    "abs", "signum", "sqrt", "exp", "ln", "sin", "cos", "tan", "asin", "acos", "atan", "sinh",
-    "cosh", "tanh",
+pub const FUNCTIONS: [(&str, fn(f64) -> f64); 14] = [
+    ("abs", f64::abs),
+    ("signum", f64::signum),
+    ("sqrt", f64::sqrt),
+    ("exp", f64::exp),
+    ("ln", f64::ln),
+    ("sin", f64::sin),
+    ("cos", f64::cos),
+    ("tan", f64::tan),
+    ("asin", f64::asin),
+    ("acos", f64::acos),
+    ("atan", f64::atan),
+    ("sinh", f64::sinh),
+    ("cosh", f64::cosh),
+    ("tanh", f64::tanh),
 ];
 /// Constants of a law.
-pub const CONSTANTS: [&str; 1] = ["PI"];
+pub const CONSTANTS: [(&str, f64); 1] = [("PI", std::f64::consts::PI)];
 /// Longest law, characters.
 const LONGEST: usize = 500;
 /// Deepest parentheses.
@@ -40,94 +52,142 @@ enum Token {
     Symbol(char),
 }
 
-/// The law as `exmex` reads it: names in braces, so that none is taken for a function, and minus
-/// signs that bind as in mathematics.
+/// The law of these parameters, ready to be evaluated.
 ///
 /// # Errors
-/// The first thing that is no law of these parameters, with its place.
-pub(super) fn judged(law: &str, parameters: &[&str]) -> Result<String, Misplaced> {
-    let tokens = tokens(law)?;
-    let misplaced = |at: usize, reason| Err(Misplaced { at, reason });
-    let end = law.chars().count();
-    let mut written = String::new();
-    // Whether an operand is wanted next, and the parentheses open, by their place.
-    let (mut operand, mut open) = (true, Vec::new());
-    // Whether a minus sign may open here: at the start and behind a parenthesis.
-    let mut fresh = true;
-    let mut previous: Option<Token> = None;
-    for (at, token) in tokens {
-        let is_function = |name: &str| FUNCTIONS.contains(&name);
-        let call = matches!(&previous, Some(Token::Name(name)) if is_function(name));
-        match (&token, operand) {
-            (Token::Symbol('('), true) => {
-                open.push(at);
-                if open.len() > DEEPEST {
-                    return misplaced(at, ExpressionReason::TooDeep);
-                }
-                written.push('(');
-                fresh = true;
-                previous = Some(token);
-                continue;
-            }
-            _ if call => {
-                let name = previous.take().map_or(String::new(), |token| match token {
-                    Token::Name(name) => name,
-                    _ => String::new(),
-                });
-                return misplaced(at, ExpressionReason::NotCalled { name });
-            }
-            (Token::Number(value), true) => {
-                let _ = write!(written, "{value:?}");
-                operand = false;
-            }
-            (Token::Name(name), true) if is_function(name) => written.push_str(name),
-            (Token::Name(name), true) => {
-                match known(name, parameters) {
-                    Ok(name) => written += &name,
-                    Err(reason) => return misplaced(at, reason),
-                }
-                operand = false;
-            }
-            (Token::Symbol('-'), true) if fresh => written.push_str("0-"),
-            (Token::Symbol('-'), true) => return misplaced(at, ExpressionReason::BareMinus),
-            (Token::Symbol(')'), false) => {
-                if open.pop().is_none() {
-                    return misplaced(at, ExpressionReason::Unopened);
-                }
-                written.push(')');
-            }
-            (Token::Symbol(operator @ ('+' | '-' | '*' | '/' | '^')), false) => {
-                written.push(*operator);
-                operand = true;
-            }
-            (Token::Symbol(_), true) => return misplaced(at, ExpressionReason::OperandMissing),
-            (_, false) => return misplaced(at, ExpressionReason::OperatorMissing),
-        }
-        fresh = false;
-        previous = Some(token);
-    }
-    if operand {
-        return misplaced(end, ExpressionReason::OperandMissing);
-    }
-    match open.pop() {
-        Some(at) => misplaced(at, ExpressionReason::Unclosed),
-        None => Ok(written),
+/// The first thing that is no law, with its place.
+pub(super) fn parsed(law: &str, parameters: &[&str]) -> Result<Program, Misplaced> {
+    let mut parser = Parser {
+        tokens: tokens(law)?.into_iter().peekable(),
+        end: law.chars().count(),
+        parameters,
+        open: 0,
+        program: Program::default(),
+    };
+    parser.whole()?;
+    match parser.tokens.next() {
+        None => Ok(parser.program),
+        Some((at, Token::Symbol(')'))) => misplaced(at, ExpressionReason::Unopened),
+        Some((at, _)) => misplaced(at, ExpressionReason::OperatorMissing),
     }
 }
 
-/// A name as the evaluator reads it: constants as they are, variables and parameters in braces.
-fn known(name: &str, parameters: &[&str]) -> Result<String, ExpressionReason> {
-    let is_variable = VARIABLES.iter().any(|(known, _)| *known == name);
-    if CONSTANTS.contains(&name) {
-        return Ok(name.to_string());
-    }
-    if is_variable || parameters.contains(&name) {
-        return Ok(format!("{{{name}}}"));
-    }
-    Err(ExpressionReason::UnknownName {
-        name: name.to_string(),
-        known: parameters.iter().map(ToString::to_string).collect(),
+fn misplaced<T>(at: usize, reason: ExpressionReason) -> Result<T, Misplaced> {
+    Err(Misplaced { at, reason })
+}
+
+/// How an operator joins what stands beside it, and how strongly; all go from the left.
+fn operator(symbol: char) -> Option<(u8, fn(f64, f64) -> f64)> {
+    Some(match symbol {
+        '+' => (1, |a, b| a + b),
+        '-' => (1, |a, b| a - b),
+        '*' => (2, |a, b| a * b),
+        '/' => (2, |a, b| a / b),
+        '^' => (3, f64::powf),
+        _ => return None,
     })
+}
+
+/// A parser by precedence (Pratt, Top down operator precedence, 1973).
+struct Parser<'a> {
+    tokens: std::iter::Peekable<std::vec::IntoIter<(usize, Token)>>,
+    /// The place behind the last character.
+    end: usize,
+    parameters: &'a [&'a str],
+    /// Parentheses that are open.
+    open: usize,
+    program: Program,
+}
+
+impl Parser<'_> {
+    /// A law, or what stands between parentheses: a minus sign may open it. Its last node is its
+    /// value, as of all that follow.
+    fn whole(&mut self) -> Result<usize, Misplaced> {
+        let first = match self.tokens.peek() {
+            Some((_, Token::Symbol('-'))) => self.program.push(Node::Number(0.0)),
+            _ => self.operand()?,
+        };
+        self.joined(first, 1)
+    }
+
+    /// What operators of this strength or more join to what stands before them.
+    fn joined(&mut self, mut left: usize, least: u8) -> Result<usize, Misplaced> {
+        while let Some((_, Token::Symbol(symbol))) = self.tokens.peek() {
+            let Some((strength, apply)) = operator(*symbol).filter(|(own, _)| *own >= least) else {
+                break;
+            };
+            self.tokens.next();
+            let right = self.operand()?;
+            let right = self.joined(right, strength + 1)?;
+            left = self.program.push(Node::Join(apply, left, right));
+        }
+        Ok(left)
+    }
+
+    /// A number, a name, a call, or something between parentheses.
+    fn operand(&mut self) -> Result<usize, Misplaced> {
+        let Some((at, token)) = self.tokens.next() else {
+            return misplaced(self.end, ExpressionReason::OperandMissing);
+        };
+        match token {
+            Token::Number(value) => Ok(self.program.push(Node::Number(value))),
+            Token::Name(name) => match FUNCTIONS.iter().find(|(known, _)| *known == name) {
+                Some((_, function)) => self.call(name, *function),
+                None => self.named(&name).map_err(|reason| Misplaced { at, reason }),
+            },
+            Token::Symbol('(') => self.between(at),
+            Token::Symbol('-') => misplaced(at, ExpressionReason::BareMinus),
+            Token::Symbol(_) => misplaced(at, ExpressionReason::OperandMissing),
+        }
+    }
+
+    fn call(&mut self, name: String, function: fn(f64) -> f64) -> Result<usize, Misplaced> {
+        match self.tokens.next() {
+            Some((at, Token::Symbol('('))) => {
+                let argument = self.between(at)?;
+                Ok(self.program.push(Node::Call(function, argument)))
+            }
+            Some((at, _)) => misplaced(at, ExpressionReason::NotCalled { name }),
+            None => misplaced(self.end, ExpressionReason::NotCalled { name }),
+        }
+    }
+
+    /// What follows a parenthesis that was opened at `at`, and its end.
+    fn between(&mut self, at: usize) -> Result<usize, Misplaced> {
+        self.open += 1;
+        if self.open > DEEPEST {
+            return misplaced(at, ExpressionReason::TooDeep);
+        }
+        let inner = self.whole()?;
+        self.open -= 1;
+        match self.tokens.next() {
+            Some((_, Token::Symbol(')'))) => Ok(inner),
+            Some((at, _)) => misplaced(at, ExpressionReason::OperatorMissing),
+            None => misplaced(at, ExpressionReason::Unclosed),
+        }
+    }
+
+    fn named(&mut self, name: &str) -> Result<usize, ExpressionReason> {
+        let of_value = |index: usize| Node::Slot(Slot::Value(index));
+        let node = match name {
+            "q" => Node::Slot(Slot::Angle),
+            "w" => Node::Slot(Slot::Speed),
+            "tau" => Node::Slot(Slot::Drive),
+            _ => match CONSTANTS.iter().find(|(known, _)| *known == name) {
+                Some((_, value)) => Node::Number(*value),
+                None => {
+                    let place = self.parameters.iter().position(|known| *known == name);
+                    place
+                        .map(of_value)
+                        .ok_or_else(|| ExpressionReason::UnknownName {
+                            name: name.to_string(),
+                            known: self.parameters.iter().map(ToString::to_string).collect(),
+                        })?
+                }
+            },
+        };
+        Ok(self.program.push(node))
+    }
 }
 
 fn tokens(law: &str) -> Result<Vec<(usize, Token)>, Misplaced> {
@@ -209,13 +269,16 @@ mod tests {
                 },
             ),
             ("abs * w", 4, R::NotCalled { name: "abs".into() }),
+            ("c * abs", 7, R::NotCalled { name: "abs".into() }),
+            ("(c w)", 3, R::OperatorMissing),
+            ("()", 1, R::OperandMissing),
         ] {
-            let found = judged(law, &["c"]).unwrap_err();
+            let found = parsed(law, &["c"]).unwrap_err();
             assert_eq!(found, Misplaced { at, reason: what }, "{law}");
         }
-        let unknown = judged("-c * v", &["c"]).unwrap_err();
+        let unknown = parsed("-c * v", &["c"]).unwrap_err();
         assert_eq!(unknown.at, 5);
-        assert!(judged(&"(".repeat(40), &[]).is_err());
-        assert!(judged(&"1+".repeat(400), &[]).is_err());
+        assert!(parsed(&"(".repeat(40), &[]).is_err());
+        assert!(parsed(&"1+".repeat(400), &[]).is_err());
     }
 }

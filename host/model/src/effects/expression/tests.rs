@@ -33,6 +33,10 @@ fn laws_are_evaluated_as_in_mathematics() {
         ("-w^2", -(w * w)),
         ("c - w - q", c - w - q),
         ("c / 2 / w", c / 2.0 / w),
+        ("c - w * q + tau / c", c - w * q + tau / c),
+        ("2^exponent^2", 2f64.powf(exponent).powf(2.0)),
+        ("2 * c^2 * w", 2.0 * c * c * w),
+        ("-(-c + (w - (q)))", -(-c + (w - q))),
         (
             "-c * signum(w) * abs(w)^exponent",
             -c * w.signum() * w.abs().powf(exponent),

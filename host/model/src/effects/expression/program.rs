@@ -1,0 +1,63 @@
+//! A law that was read, and its value.
+
+use super::super::JointState;
+
+/// What a name of a law stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Slot {
+    Angle,
+    Speed,
+    Drive,
+    Value(usize),
+}
+
+/// A part of a law; others are named by their place, which is before its own.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Node {
+    Number(f64),
+    Slot(Slot),
+    Call(fn(f64) -> f64, usize),
+    Join(fn(f64, f64) -> f64, usize, usize),
+}
+
+/// A law as its parts. The last one is its value.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Program {
+    nodes: Vec<Node>,
+}
+
+impl Program {
+    /// Adds a part; its place.
+    pub fn push(&mut self, node: Node) -> usize {
+        self.nodes.push(node);
+        self.nodes.len() - 1
+    }
+
+    /// Whether a name occurs.
+    pub fn has(&self, slot: Slot) -> bool {
+        let is = |node: &Node| matches!(node, Node::Slot(own) if *own == slot);
+        self.nodes.iter().any(is)
+    }
+
+    /// The torque, N m; not a number where the law has no value.
+    pub fn value(&self, values: &[f64], at: &JointState) -> f64 {
+        self.nodes
+            .len()
+            .checked_sub(1)
+            .map_or(f64::NAN, |last| self.part(last, values, at))
+    }
+
+    fn part(&self, place: usize, values: &[f64], at: &JointState) -> f64 {
+        match self.nodes[place] {
+            Node::Number(value) => value,
+            Node::Slot(Slot::Angle) => at.angle_rad,
+            Node::Slot(Slot::Speed) => at.speed_rad_s,
+            Node::Slot(Slot::Drive) => at.drive_nm,
+            Node::Slot(Slot::Value(index)) => values.get(index).copied().unwrap_or(f64::NAN),
+            Node::Call(function, argument) => function(self.part(argument, values, at)),
+            Node::Join(apply, left, right) => {
+                apply(self.part(left, values, at), self.part(right, values, at))
+            }
+        }
+    }
+}
