@@ -1,16 +1,19 @@
 //! Everything that follows from a model and weights, as one value; `export` writes it in many ways.
 
+mod fixed;
+
+pub use fixed::Fixed;
+
 use super::controllability::{Controllability, controllability, observability};
 use super::eigen::{largest, poles};
 use super::error::{DesignError, MOST_GROWTH};
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
-use super::fixed_law::{FixedLaw, Loss};
 use super::gains::{Gains, dlqr, lqr};
-use super::integral::{Integral, Sums};
+use super::integral::Integral;
 use super::linearise::{Linearisation, linearise};
 use super::omitted::OmittedEffect;
 use super::operating_point::input_delay_s;
-use super::quantise::{Format, Ranges, largest_word, power_of_two_above, quantise};
+use super::quantise::Ranges;
 use super::request::{Request, Sensors, Time};
 use super::signal::{Signal, input, states};
 use super::stationary::{Stationary, stationary};
@@ -79,19 +82,6 @@ pub struct Estimation {
     pub stationary: Option<Stationary>,
 }
 
-/// A law in fixed point.
-#[derive(Debug, Clone)]
-pub struct Fixed {
-    /// What it covers.
-    pub ranges: Ranges,
-    /// The table.
-    pub law: FixedLaw,
-    /// How the caller keeps the sums of angles among the states.
-    pub sums: Option<Sums>,
-    /// What rounding costs.
-    pub loss: Loss,
-}
-
 impl Design {
     /// Everything that follows from `model` and `request`.
     ///
@@ -153,88 +143,6 @@ impl Design {
             }
         }
         Ok(design)
-    }
-
-    fn fixed(
-        &self,
-        request: &Request,
-        plant: &Discrete,
-        mut ranges: Ranges,
-    ) -> Result<Fixed, DesignError> {
-        let Ranges { state, input } = &mut ranges;
-        let mut format = request.format.clone();
-        let mut sums = None;
-        if let Some(integral) = &self.integral {
-            sums = Some(self.sums(integral, plant.ts_s, input, state, &mut format)?);
-        }
-        if plant.delayed_inputs > 0 {
-            // Past inputs come back in the steps in which they went out.
-            let word = largest_word(format.bits);
-            let step = |range: &f64| power_of_two_above(range / word);
-            let input_step = format.input_step.take();
-            // As states they count from zero, and so reach the operating point's input as well.
-            let past = input.iter().zip(&self.u0);
-            let past = past.map(|(range, u)| step(&(range + u.abs())));
-            let input_step = input_step.unwrap_or_else(|| past.collect());
-            let mut steps = match format.state_step.take() {
-                Some(steps) => steps,
-                None => self.own_steps(state, word),
-            };
-            for _ in 0..plant.delayed_inputs {
-                steps.extend(&input_step);
-                state.extend(&*input);
-            }
-            (format.state_step, format.input_step) = (Some(steps), Some(input_step));
-        }
-        let law = quantise(&self.gains.k, &self.x0, &self.u0, &ranges, &format)?;
-        let loss = law.loss(plant, &self.gains, &self.x0, &self.u0, &ranges.state)?;
-        if loss.radius_fixed >= 1.0 {
-            return Err(DesignError::UnstableWhenRounded {
-                bits: law.bits,
-                radius: loss.radius_fixed,
-            });
-        }
-        Ok(Fixed {
-            ranges,
-            law,
-            sums,
-            loss,
-        })
-    }
-
-    /// The sums in fixed point: their ranges and steps join those of the plant's own states.
-    fn sums(
-        &self,
-        integral: &Integral,
-        ts_s: f64,
-        input: &[f64],
-        state: &mut Vec<f64>,
-        format: &mut Format,
-    ) -> Result<Sums, DesignError> {
-        let (own, word) = (self.plant.a.nrows(), largest_word(format.bits));
-        let range = integral.range(&self.gains.k, own, input);
-        let range = range.ok_or(DesignError::IntegralUnused)?;
-        let mut steps = match format.state_step.take() {
-            Some(steps) => steps,
-            None => self.own_steps(state, word),
-        };
-        let (shift, sum_step) = integral.in_words(ts_s, &steps, &range, word);
-        steps.extend(sum_step);
-        state.extend(range);
-        format.state_step = Some(steps);
-        Ok(Sums {
-            first: own,
-            joints: integral.joints.clone(),
-            shift,
-        })
-    }
-
-    /// Powers of two that let the plant's own states reach `range` about the operating point.
-    fn own_steps(&self, range: &[f64], word: f64) -> Vec<f64> {
-        let reach = range.iter().zip(&self.x0);
-        reach
-            .map(|(range, x)| power_of_two_above((range + x.abs()) / word))
-            .collect()
     }
 
     fn estimator(
