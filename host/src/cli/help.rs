@@ -1,6 +1,7 @@
 //! `handstand --help`: the commands by the people who need them.
 
-use clap::Command;
+use super::gains::GainsArgs;
+use clap::{Args as _, Command};
 use std::fmt::Write as _;
 
 /// What people do, and the commands for it in the order in which they are used.
@@ -26,8 +27,26 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Help", &["doctor", "completions", "man"]),
 ];
 
+/// A command that deploys, the options apart that only gains on plain states have.
+fn parted(command: Command) -> Command {
+    let gains = GainsArgs::augment_args(Command::new("gains"));
+    let shared = ["model", "force"];
+    let own =
+        |id: &str| !shared.contains(&id) && gains.get_arguments().any(|arg| *arg.get_id() == *id);
+    command.mut_args(|arg| {
+        if own(arg.get_id().as_str()) {
+            arg.help_heading("With --law state alone")
+        } else {
+            arg
+        }
+    })
+}
+
 /// The command line with its commands grouped in the help.
 pub fn grouped(command: Command) -> Command {
+    let command = command
+        .mut_subcommand("deploy", parted)
+        .mut_subcommand("gains", |gains| gains.mut_subcommand("deploy", parted));
     let (header, literal) = {
         let styles = command.get_styles();
         (*styles.get_header(), *styles.get_literal())

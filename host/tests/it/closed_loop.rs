@@ -43,7 +43,7 @@ fn bench(model: &str, joint: usize, coulomb_nm: f64, lean_rad: f64, seconds: f64
     let friction =
         format!("\n[[effect]]\nkind = \"coulomb\"\njoint = {joint}\ntorque_nm = {coulomb_nm}\n");
     bench.put("true.toml", format!("{nominal}{friction}"));
-    let ran = bench.run("gains nominal.toml --state-space gains.json");
+    let ran = bench.run("gains nominal.toml --q 100 --state-space gains.json");
     assert_eq!(ran.code, Some(0), "{ran:?}");
     for (name, factor) in [("a.csv", 1.0), ("b.csv", -1.5), ("c.csv", 2.0)] {
         bench.put(name, balanced(&bench, factor * lean_rad, seconds));

@@ -61,7 +61,7 @@ fn the_law_that_is_stated_is_the_one_that_runs() {
         assert!(coarse.stdout.contains(said), "{said}: {}", coarse.stdout);
     }
     let recovered = bench
-        .run("gains free.toml --lqg --recovery 0.1 --json")
+        .run("gains free.toml --q 100 --lqg --recovery 0.1 --json")
         .json();
     let noisy = |stationary: &serde_json::Value| stationary["input_rms"][0].as_f64().unwrap();
     let before = &recovered["without_recovery"];

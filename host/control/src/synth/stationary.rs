@@ -87,7 +87,7 @@ mod tests {
     use super::*;
     use crate::model::Model;
     use crate::sim::closed_loop::{normal, stream};
-    use crate::synth::{Request, Sensors, rounding_variance};
+    use crate::synth::{CostWeights, Request, Sensors, rounding_variance};
     use nalgebra::DVector;
     use std::path::Path;
 
@@ -96,6 +96,7 @@ mod tests {
         let model = Model::parse(text, Path::new("handstand.toml")).unwrap();
         let request = Request {
             sensors: Some(sensors),
+            weights: CostWeights::PAPER,
             ..Request::standard(&model)
         };
         Design::of(&model, &request).unwrap()

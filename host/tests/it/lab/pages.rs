@@ -183,7 +183,7 @@ fn a_robot_is_balanced_and_stopped_from_its_page() {
 
     browser.open(&format!("http://127.0.0.1:{}/s/1/gains", server.port));
     browser.until("document.querySelector('#response[data-drawn]')");
-    browser.press_on("#q", "ArrowRight");
+    browser.press_on("#states", "ArrowRight");
     browser.until("document.getElementById('figures').textContent.includes('fixed point')");
     browser.pictures("8-gains-robot");
     assert_eq!(browser.complaints, Vec::<String>::new());
