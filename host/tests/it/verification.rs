@@ -77,7 +77,7 @@ fn the_law_that_is_stated_is_the_one_that_runs() {
         "handstand.toml",
         include_str!("../../models/handstand.toml"),
     );
-    let wild = bench.run("gains handstand.toml --lqg --position-step 0.5 --gyro-step 100");
+    let wild = bench.run("gains handstand.toml --q 100 --lqg --position-step 0.5 --gyro-step 100");
     assert_eq!(wild.code, Some(1), "{wild:?}");
     assert!(
         wild.stdout
