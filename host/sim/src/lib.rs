@@ -8,7 +8,8 @@
 //!     link = [{ com_m = 0.1, mass_kg = 0.2, inertia_kg_m2 = 0.001 }]
 //!     joint = [{ drive = "passive" }]
 //!     effect = [{ kind = "viscous", joint = 1, coefficient_nm_s_rad = 0.002 }]
-//!     log = { time = { column = "t", unit = "s" }, joint = [{}] }
+//!     log.time = { column = "t", unit = "s" }
+//!     log.joint = [{ position = { column = "q", unit = "rad" } }]
 //! "#;
 //! let model = Model::parse(pendulum, "pendulum.toml".as_ref())?;
 //! let mut swing = Live::new(&model, &[1.0])?;

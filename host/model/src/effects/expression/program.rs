@@ -1,6 +1,10 @@
 //! A law that was read, and its value.
 
 use super::super::JointState;
+use super::syntax::LawFunction;
+
+/// What joins two parts.
+pub(super) type LawOperator = fn(f64, f64) -> f64;
 
 /// What a name of a law stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,8 +20,8 @@ pub(super) enum Slot {
 pub(super) enum Node {
     Number(f64),
     Slot(Slot),
-    Call(fn(f64) -> f64, usize),
-    Join(fn(f64, f64) -> f64, usize, usize),
+    Call(LawFunction, usize),
+    Join(LawOperator, usize, usize),
 }
 
 /// A law as its parts. The last one is its value.

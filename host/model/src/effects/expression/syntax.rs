@@ -3,7 +3,7 @@
 //! A law is numbers, variables and parameters joined by `+ - * / ^`, parentheses, and functions of
 //! one argument. There is nothing else: no assignment, no loop, no access to anything.
 
-use super::program::{Node, Program, Slot};
+use super::program::{LawOperator, Node, Program, Slot};
 use super::reason::ExpressionReason;
 
 /// Variables of a law, and what they are.
@@ -12,8 +12,11 @@ pub const VARIABLES: [(&str, &str); 3] = [
     ("w", "speed of the joint, rad/s"),
     ("tau", "torque of the joint's drive, N m"),
 ];
+/// A function of one argument.
+pub type LawFunction = fn(f64) -> f64;
+
 /// Functions of a law.
-pub const FUNCTIONS: [(&str, fn(f64) -> f64); 14] = [
+pub const FUNCTIONS: [(&str, LawFunction); 14] = [
     ("abs", f64::abs),
     ("signum", f64::signum),
     ("sqrt", f64::sqrt),
@@ -77,7 +80,7 @@ fn misplaced<T>(at: usize, reason: ExpressionReason) -> Result<T, Misplaced> {
 }
 
 /// How an operator joins what stands beside it, and how strongly; all go from the left.
-fn operator(symbol: char) -> Option<(u8, fn(f64, f64) -> f64)> {
+fn operator(symbol: char) -> Option<(u8, LawOperator)> {
     Some(match symbol {
         '+' => (1, |a, b| a + b),
         '-' => (1, |a, b| a - b),
@@ -141,7 +144,7 @@ impl Parser<'_> {
         }
     }
 
-    fn call(&mut self, name: String, function: fn(f64) -> f64) -> Result<usize, Misplaced> {
+    fn call(&mut self, name: String, function: LawFunction) -> Result<usize, Misplaced> {
         match self.tokens.next() {
             Some((at, Token::Symbol('('))) => {
                 let argument = self.between(at)?;
