@@ -3,7 +3,7 @@
 use super::one_sample::{OddCodes, OneCodes};
 use super::reach::{GoalRange, one_held, one_may_reach};
 use super::sample::{RobotSample, ServoSample};
-use super::source::{EmergencyOff, SampleSource, send_twice};
+use super::source::{EmergencyOff, SampleSource, outlasting_answers, send_twice};
 use crate::error::{Error, Result};
 use crate::{
     OneServo, Protocol, SerialLink, ServoError, ServoResult, Servos, StatusError, emergency_packet,
@@ -188,8 +188,10 @@ impl<L: SerialLink> SampleSource for Adapter<L> {
     }
 
     fn emergency_off(&mut self) -> Option<EmergencyOff> {
-        let voice = self.servos.link().second_writer()?;
-        Some(send_twice(voice, emergency_packet(Protocol::One)))
+        let link = self.servos.link();
+        let idle = outlasting_answers(link.baud());
+        let off = emergency_packet(Protocol::One);
+        Some(send_twice(link.second_writer()?, idle, off))
     }
 
     fn danger(&self) -> Option<String> {

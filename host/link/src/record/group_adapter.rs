@@ -4,7 +4,7 @@ use super::group_sample::{HEALTH, STATE, angle_of, code_of, health, state};
 use super::reach::{GoalLimits, GoalRange, SLACK_RAD};
 use super::sample::{RobotSample, ServoSample};
 use super::servo_watch::{ServoWatch, may_begin, may_move, takes_positions};
-use super::source::{EmergencyOff, SampleSource, send_twice};
+use super::source::{EmergencyOff, SampleSource, outlasting_answers, send_twice};
 use crate::error::{Error, Result};
 use crate::{
     GroupItem, Protocol, Reading, SerialLink, ServoResult, Servos, emergency_packet,
@@ -314,8 +314,10 @@ impl<L: SerialLink> SampleSource for GroupAdapter<L> {
     }
 
     fn emergency_off(&mut self) -> Option<EmergencyOff> {
-        let voice = self.servos.link().second_writer()?;
-        Some(send_twice(voice, emergency_packet(Protocol::Two)))
+        let link = self.servos.link();
+        let idle = outlasting_answers(link.baud());
+        let off = emergency_packet(Protocol::Two);
+        Some(send_twice(link.second_writer()?, idle, off))
     }
 
     fn danger(&self) -> Option<String> {

@@ -10,16 +10,22 @@ use std::time::Duration;
 pub type EmergencyOff = Box<dyn FnOnce() + Send>;
 
 /// Says these bytes twice, some time apart: what else was being said may have garbled the first, or
-/// have been a goal, which switches torque on.
-pub(super) fn send_twice(mut voice: LineWriter, bytes: Vec<u8>) -> EmergencyOff {
+/// have been a goal, which switches torque on. `idle` goes before the second: a line that stalled
+/// passes all of it on in one burst, and the last word must not meet an answer.
+pub(super) fn send_twice(mut voice: LineWriter, idle: Vec<u8>, bytes: Vec<u8>) -> EmergencyOff {
     const APART: Duration = Duration::from_millis(50);
     Box::new(move || {
-        for _ in 0..2 {
-            // Nobody is left who could be told that it failed.
-            let _ = voice.write_all(&bytes);
+        for before in [Vec::new(), idle] {
+            // It cannot be told any more that this failed.
+            let _ = voice.write_all(&[before, bytes.clone()].concat());
             std::thread::sleep(APART);
         }
     })
+}
+
+/// Bytes of `FF`, no part of a servo's packet, for longer than any answer takes: 5 ms.
+pub(super) fn outlasting_answers(baud: u32) -> Vec<u8> {
+    vec![0xff; (baud / 10 / 200) as usize]
 }
 
 /// Servos that can be sampled, and moved.

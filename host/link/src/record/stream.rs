@@ -45,7 +45,7 @@ pub struct Stream<L: SerialLink> {
 pub fn emergency_off<L: SerialLink>(session: &mut Session<L>) -> Option<EmergencyOff> {
     let off = [Command::Disarm, Command::Mode(Mode::Bridge)];
     let off = off.map(|command| session.bytes(&command)).concat();
-    Some(send_twice(session.link().second_writer()?, off))
+    Some(send_twice(session.link().second_writer()?, Vec::new(), off))
 }
 
 impl<L: SerialLink> Stream<L> {

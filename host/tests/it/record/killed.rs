@@ -150,12 +150,8 @@ fn second_ctrl_c(words: &[&str], options: &[&str], baud: u32) -> bool {
     signal("-INT", &replay);
     std::thread::sleep(Duration::from_millis(5));
     signal("-INT", &replay);
-    // The servos hear again between the first and the second time that torque is said to go off:
-    // what was said while they heard nothing reaches them in one burst, as on no real line, and
-    // may collide with their answers.
-    std::thread::sleep(Duration::from_millis(20));
-    signal("-CONT", &robot);
     let code = replay.wait().unwrap().code();
+    signal("-CONT", &robot);
     if code == Some(4) {
         robot.kill().unwrap();
         robot.wait().unwrap();
