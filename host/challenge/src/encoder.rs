@@ -57,9 +57,10 @@ impl Encoder {
         let speed = (encoded - before) / h;
         let reach = physics.grip_rad_s2 * h;
         self.shaft_rad_s = speed.clamp(self.shaft_rad_s - reach, self.shaft_rad_s + reach);
-        let shaft = match self.shaft_rad_s == speed {
-            true => shaft + (encoded - before),
-            false => shaft + self.shaft_rad_s * h,
+        let shaft = if self.shaft_rad_s == speed {
+            shaft + (encoded - before)
+        } else {
+            shaft + self.shaft_rad_s * h
         };
         self.turned = [encoded, shaft];
         shaft

@@ -41,9 +41,10 @@ impl Gyro {
 
     /// Goes on for `h` seconds, in which the link's rate changes from the first to the second.
     pub fn follow(&mut self, law: GyroLaw, [before, after]: [f64; 2], h: f64) {
-        self.0 = match law.lag_s > 0.0 {
-            true => self.0 + (0.5 * (before + after) - self.0) * h / (law.lag_s + h / 2.0),
-            false => after,
+        self.0 = if law.lag_s > 0.0 {
+            self.0 + (0.5 * (before + after) - self.0) * h / (law.lag_s + h / 2.0)
+        } else {
+            after
         };
     }
 

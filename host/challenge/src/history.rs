@@ -30,9 +30,10 @@ impl History {
 
     /// After `h` s under this command during which the joint has turned by `turned` rad.
     pub fn pass(&mut self, physics: &Physics, push: DriveCommand, turned: f64, h: f64) {
-        let duty = match push.torque_on {
-            true => physics.applied(push.duty),
-            false => 0.0,
+        let duty = if push.torque_on {
+            physics.applied(push.duty)
+        } else {
+            0.0
         };
         if physics.warming > 0.0 {
             self.warmth += h / physics.warming_s * (duty * duty - self.warmth);
@@ -84,9 +85,10 @@ impl History {
     /// Share of its torque that the drive gives.
     pub fn share(&self, physics: &Physics) -> f64 {
         let warm = 1.0 / (1.0 + physics.warming * self.warmth);
-        match physics.fold_after_s > 0.0 && self.overloaded_s >= physics.fold_after_s {
-            true => warm * physics.fold_share,
-            false => warm,
+        if physics.fold_after_s > 0.0 && self.overloaded_s >= physics.fold_after_s {
+            warm * physics.fold_share
+        } else {
+            warm
         }
     }
 

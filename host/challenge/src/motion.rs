@@ -170,9 +170,10 @@ impl ArmRecording {
              # Angle from hanging, counter-clockwise, in steps of 300 deg / 1024.\n\
              time_s,position_rad,duty,supply_v,torque_on,payload_kg,turned"
         );
-        text += match self.rate_rad_s.is_empty() {
-            true => "\n",
-            false => ",gyro_rad_s\n",
+        text += if self.rate_rad_s.is_empty() {
+            "\n"
+        } else {
+            ",gyro_rad_s\n"
         };
         let commands = &self.commands;
         for k in 0..self.position.len() {

@@ -39,9 +39,12 @@ impl RobotRegulator {
         let past = (a.nrows() - 2 * LINKS) / DRIVEN.len();
         let weight = |k: usize| [100.0, 1.0, 0.0][(k / LINKS).min(2)];
         let q = DMatrix::from_diagonal(&DVector::from_fn(a.nrows(), |k, _| weight(k)));
-        let r = DMatrix::from_fn(DRIVEN.len(), DRIVEN.len(), |k, l| match k == l {
-            true => laws.joints[DRIVEN[k]].stall_nm.powi(2),
-            false => 0.0,
+        let r = DMatrix::from_fn(DRIVEN.len(), DRIVEN.len(), |k, l| {
+            if k == l {
+                laws.joints[DRIVEN[k]].stall_nm.powi(2)
+            } else {
+                0.0
+            }
         });
         Some(RobotRegulator {
             gain: riccati(&a, &b, &q, &r)?,
@@ -154,9 +157,10 @@ fn linear(laws: &Laws, pose: &Joints, holding: &Duties) -> (DMatrix<f64>, DMatri
                 1e-4,
             );
             for (row, value) in moved.into_iter().enumerate() {
-                match age == past {
-                    true => b[(row, k)] = value,
-                    false => a[(row, states + inputs * age + k)] = value,
+                if age == past {
+                    b[(row, k)] = value
+                } else {
+                    a[(row, states + inputs * age + k)] = value
                 }
             }
         }
@@ -164,9 +168,10 @@ fn linear(laws: &Laws, pose: &Joints, holding: &Duties) -> (DMatrix<f64>, DMatri
     for age in 0..past {
         for k in 0..inputs {
             let row = states + inputs * age + k;
-            match age + 1 < past {
-                true => a[(row, row + inputs)] = 1.0,
-                false => b[(row, k)] = 1.0,
+            if age + 1 < past {
+                a[(row, row + inputs)] = 1.0
+            } else {
+                b[(row, k)] = 1.0
             }
         }
     }

@@ -159,9 +159,10 @@ impl<'a> Robot<'a> {
         });
         // Impulses of dry friction, least and most.
         let limits: [(f64, f64); LINKS] = std::array::from_fn(|k| {
-            let (motor, holding) = match joints[k].stall_nm > 0.0 {
-                true => (drive[k], needed[k]),
-                false => (0.0, 0.0),
+            let (motor, holding) = if joints[k].stall_nm > 0.0 {
+                (drive[k], needed[k])
+            } else {
+                (0.0, 0.0)
             };
             let state = [self.angle[k], at_speed[k]];
             let most = |direction| h * joints[k].friction(state, direction, motor, holding);

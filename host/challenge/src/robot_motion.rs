@@ -76,9 +76,12 @@ impl RobotRecording {
                 let drive = DRIVEN.iter().position(|&driven| driven == k);
                 let sent_s = self.time_s[last] + since_s - laws.joints[k].delay_s;
                 DriveCommand {
-                    duty: drive.map_or(0.0, |drive| match laws.joints[k].delay_s == 0.0 {
-                        true => self.duty[last][drive],
-                        false => self.arriving(drive, sent_s),
+                    duty: drive.map_or(0.0, |drive| {
+                        if laws.joints[k].delay_s == 0.0 {
+                            self.duty[last][drive]
+                        } else {
+                            self.arriving(drive, sent_s)
+                        }
                     }),
                     supply_v: self.supply_v[last],
                     torque_on: self.torque_on[last],

@@ -103,13 +103,14 @@ gravity_m_s2 = {GRAVITY_M_S2}
     }
     for stall_nm in stall_nm {
         text += "\n[[joint]]\n";
-        let _ = match *stall_nm > 0.0 {
-            true => write!(
+        let _ = if *stall_nm > 0.0 {
+            write!(
                 text,
                 "drive = \"duty\"\nstall_torque_nm = {stall_nm:?}\n\
-                 nominal_supply_v = {supply_v:?}\n"
-            ),
-            false => writeln!(text, "drive = \"passive\""),
+             nominal_supply_v = {supply_v:?}\n"
+            )
+        } else {
+            writeln!(text, "drive = \"passive\"")
         };
     }
     for line in effects {

@@ -13,9 +13,10 @@ pub fn is_let_down(condition: Condition) -> bool {
 pub fn account_words(account: &Telemetry) -> String {
     let servo = account.tripped.map_or(String::new(), |tripped| {
         let names: Vec<&str> = ErrorBits(tripped.error).names().collect();
-        match names.is_empty() {
-            true => format!(", servo {} lost its torque", tripped.id),
-            false => format!(", servo {} reports {}", tripped.id, names.join(" and ")),
+        if names.is_empty() {
+            format!(", servo {} lost its torque", tripped.id)
+        } else {
+            format!(", servo {} reports {}", tripped.id, names.join(" and "))
         }
     });
     format!(

@@ -114,9 +114,12 @@ pub fn id_ranges(ids: &[u8]) -> String {
             _ => runs.push((*id, *id)),
         }
     }
-    let word = |(first, last): &(u8, u8)| match first == last {
-        true => first.to_string(),
-        false => format!("{first}-{last}"),
+    let word = |(first, last): &(u8, u8)| {
+        if first == last {
+            first.to_string()
+        } else {
+            format!("{first}-{last}")
+        }
     };
     runs.iter().map(word).collect::<Vec<_>>().join(", ")
 }

@@ -53,13 +53,16 @@ impl<L: SerialLink> Servos<L> {
             }
         }
         let of = |item: &GroupItem| match found.remove(&item.id) {
-            Some(reading) => match reading.data.len() == usize::from(item.count) {
-                true => Ok(reading),
-                false => Err(ServoError::Refused {
-                    id: item.id,
-                    error: reading.error,
-                }),
-            },
+            Some(reading) => {
+                if reading.data.len() == usize::from(item.count) {
+                    Ok(reading)
+                } else {
+                    Err(ServoError::Refused {
+                        id: item.id,
+                        error: reading.error,
+                    })
+                }
+            }
             None => Err(ServoError::NoResponse { id: item.id }),
         };
         Ok(items.iter().map(of).collect())
@@ -90,9 +93,10 @@ impl<L: SerialLink> Servos<L> {
         let waits = items
             .iter()
             .map(|item| self.return_delay(item.id) + PROCESSING);
-        let delay = match fast {
-            true => waits.max().unwrap_or_default(),
-            false => waits.sum(),
+        let delay = if fast {
+            waits.max().unwrap_or_default()
+        } else {
+            waits.sum()
         };
         let deadline = self.link().now() + line + delay + self.link().latency();
         // Bytes are taken apart when as many came as were asked for, not at each of them.
@@ -116,9 +120,10 @@ pub fn group_read_bytes(items: &[GroupItem], fast: bool) -> usize {
 
 fn answer_bytes(items: &[GroupItem], fast: bool) -> usize {
     let counts = items.iter().map(|item| usize::from(item.count));
-    match fast {
-        true => 8 + counts.map(|count| count + 4).sum::<usize>(),
-        false => counts.map(|count| Protocol::Two.status_length(count)).sum(),
+    if fast {
+        8 + counts.map(|count| count + 4).sum::<usize>()
+    } else {
+        counts.map(|count| Protocol::Two.status_length(count)).sum()
     }
 }
 

@@ -165,9 +165,10 @@ impl<L: SerialLink> Servos<L> {
     pub fn cm5_servo(&mut self, id: u8) -> ServoResult<OneServo> {
         let servo = self.one_servo(id)?;
         let OneModel { number, name, .. } = *servo.model;
-        match servo.model.has_ax_codes() {
-            true => Ok(servo),
-            false => Err(ServoError::NotAxCodes { id, number, name }),
+        if servo.model.has_ax_codes() {
+            Ok(servo)
+        } else {
+            Err(ServoError::NotAxCodes { id, number, name })
         }
     }
 }

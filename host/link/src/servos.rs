@@ -72,9 +72,10 @@ impl<L: SerialLink> Servos<L> {
     pub fn read(&mut self, id: u8, address: u16, count: u16) -> ServoResult<Reading> {
         let reading = self.ask(id, ServoRequest::Read { address, count })?;
         let error = reading.error;
-        match reading.data.len() == usize::from(count) {
-            true => Ok(reading),
-            false => Err(ServoError::Refused { id, error }),
+        if reading.data.len() == usize::from(count) {
+            Ok(reading)
+        } else {
+            Err(ServoError::Refused { id, error })
         }
     }
 

@@ -78,9 +78,10 @@ fn verdict(printed: &Printed, computed: &IntervalEstimate) -> Agreement {
         return Agreement::Differs;
     };
     if let PrintedQuantity::Servo(_) = printed.quantity {
-        return match computed.holds(value) {
-            true => Agreement::Agrees,
-            false => Agreement::Differs,
+        return if computed.holds(value) {
+            Agreement::Agrees
+        } else {
+            Agreement::Differs
         };
     }
     let digits = decimals(printed.text);

@@ -217,9 +217,10 @@ fn delays(computed: &Computed) -> Result<Conclusion> {
         ms(on_board_s),
         ms(path_s(4, None, true)),
         ms(over_pc_s),
-        match over_pc_s < stable_s {
-            true => "they are, too",
-            false => "there they are not",
+        if over_pc_s < stable_s {
+            "they are, too"
+        } else {
+            "there they are not"
         }
     );
     let holds = match (on_board_s < stable_s, over_pc_s < stable_s) {
@@ -251,9 +252,10 @@ fn centroids(computed: &Computed) -> Result<Conclusion> {
         "The model file holds Table 1 to every digit. With each centre of mass off by 0.5 mm \
          either way the sampled loop's spectral radius goes from {nominal:.4} to {worst:.4} at \
          worst: {}.",
-        match stable {
-            true => "it stays stable",
-            false => "it is lost",
+        if stable {
+            "it stays stable"
+        } else {
+            "it is lost"
         }
     );
     Ok((said, Holds::when(stable)))

@@ -97,9 +97,10 @@ fn eccentric_masses() -> Result<PaperFigure> {
 /// Where `fails` turns true between `low` (false) and `high` (true), to a thousandth of the span;
 /// `high` if it never does.
 pub(super) fn edge(fails: impl Fn(f64) -> Result<bool>, low: f64, high: f64) -> Result<f64> {
-    match fails(high)? {
-        true => Ok(bisect(low, high, 10, |value| Ok(!fails(value)?))?.1),
-        false => Ok(high),
+    if fails(high)? {
+        Ok(bisect(low, high, 10, |value| Ok(!fails(value)?))?.1)
+    } else {
+        Ok(high)
     }
 }
 

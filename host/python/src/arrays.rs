@@ -63,17 +63,21 @@ pub fn rows_or_none(
         return Ok(vec![None; joints]);
     };
     let is_list = given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>();
-    let items: Vec<Bound<'_, PyAny>> = match is_list {
-        true => given.try_iter()?.collect::<PyResult<_>>()?,
-        false => Vec::new(),
+    let items: Vec<Bound<'_, PyAny>> = if is_list {
+        given.try_iter()?.collect::<PyResult<_>>()?
+    } else {
+        Vec::new()
     };
     if !items.iter().any(|item| item.is_none()) {
         let rows = rows(name, given, Some(samples))?;
         return Ok(rows.into_iter().map(Some).collect());
     }
-    let row = |item: &Bound<'_, PyAny>| match item.is_none() {
-        true => Ok(None),
-        false => numbers(name, item).map(Some),
+    let row = |item: &Bound<'_, PyAny>| {
+        if item.is_none() {
+            Ok(None)
+        } else {
+            numbers(name, item).map(Some)
+        }
     };
     items.iter().map(row).collect()
 }

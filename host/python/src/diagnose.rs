@@ -102,12 +102,13 @@ pub fn diagnose(
 
 /// A limit of time, s.
 fn seconds(within_s: f64) -> handstand::Result<f64> {
-    match within_s > 0.0 && within_s <= 3.2e7 {
-        true => Ok(within_s),
-        false => Err(handstand::Error::usage(
+    if within_s > 0.0 && within_s <= 3.2e7 {
+        Ok(within_s)
+    } else {
+        Err(handstand::Error::usage(
             format!("within_s = {within_s} is no time"),
             "give seconds above 0, or leave it out",
-        )),
+        ))
     }
 }
 

@@ -53,9 +53,10 @@ pub fn init(
     length_m: Option<Vec<f64>>,
     mass_kg: Option<Vec<f64>>,
 ) -> PyResult<Draft> {
-    let frame = match is_frame(log)? {
-        true => Some(FrameFile::of(log)?),
-        false => None,
+    let frame = if is_frame(log)? {
+        Some(FrameFile::of(log)?)
+    } else {
+        None
     };
     let asked = match &frame {
         Some(file) => file.request(),

@@ -79,8 +79,9 @@ fn name(log: &Bound<'_, PyAny>, index: usize) -> PyResult<String> {
         return Ok(motion.get().inner.name.clone());
     }
     let is_file = log.extract::<String>().is_ok() || log.hasattr("__fspath__")?;
-    match is_file && !is_frame(log)? {
-        true => Ok(log.str()?.to_string()),
-        false => Ok(format!("session {}", index + 1)),
+    if is_file && !is_frame(log)? {
+        Ok(log.str()?.to_string())
+    } else {
+        Ok(format!("session {}", index + 1))
     }
 }

@@ -204,15 +204,16 @@ fn ranges(given: &Bound<'_, PyAny>, joints: usize) -> PyResult<(Vec<f64>, Vec<f6
         Err(_) => given.extract().unwrap_or_default(),
     };
     let is_range = |(low, high): &(f64, f64)| low.is_finite() && high.is_finite() && low < high;
-    match pairs.len() == joints && pairs.iter().all(is_range) {
-        true => Ok(pairs.into_iter().unzip()),
-        false => Err(usage(
+    if pairs.len() == joints && pairs.iter().all(is_range) {
+        Ok(pairs.into_iter().unzip())
+    } else {
+        Err(usage(
             format!(
                 "`angles_rad` is {given} for {}",
                 crate::value::counted(joints, "joint")
             ),
             "give (low, high) for all joints, or a list of one for each",
-        )),
+        ))
     }
 }
 
@@ -262,9 +263,10 @@ impl Proposal {
     }
 
     fn __repr__(&self) -> String {
-        match self.helps() {
-            true => "<Proposal: an experiment that helps>".to_string(),
-            false => "<Proposal: no experiment within the limits helps>".to_string(),
+        if self.helps() {
+            "<Proposal: an experiment that helps>".to_string()
+        } else {
+            "<Proposal: no experiment within the limits helps>".to_string()
         }
     }
 }

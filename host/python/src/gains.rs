@@ -177,14 +177,15 @@ fn weight(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Weight> {
     }
     let rows = rows(name, given, None)?;
     let size = rows.len();
-    match rows.iter().all(|row| row.len() == size) {
-        true => Ok(Weight::Matrix(DMatrix::from_fn(size, size, |i, j| {
+    if rows.iter().all(|row| row.len() == size) {
+        Ok(Weight::Matrix(DMatrix::from_fn(size, size, |i, j| {
             rows[i][j]
-        }))),
-        false => Err(usage(
+        })))
+    } else {
+        Err(usage(
             format!("`{name}` has {size} rows of {} numbers", rows[0].len()),
             "give a number, a diagonal or a square matrix",
-        )),
+        ))
     }
 }
 
@@ -306,9 +307,10 @@ impl Gains {
     }
 
     fn __repr__(&self) -> String {
-        let loop_is = match self.verification.stabilised {
-            true => "stabilised",
-            false => "NOT stabilised",
+        let loop_is = if self.verification.stabilised {
+            "stabilised"
+        } else {
+            "NOT stabilised"
         };
         format!(
             "<Gains for {:?}: the simulated loop is {loop_is}>",

@@ -36,9 +36,10 @@ pub fn log_check(
     logs: &Bound<'_, PyAny>,
 ) -> PyResult<LogCheck> {
     let model = model.borrow().clone();
-    let frame = match is_frame(logs)? {
-        true => Some(FrameFile::of(logs)?),
-        false => None,
+    let frame = if is_frame(logs)? {
+        Some(FrameFile::of(logs)?)
+    } else {
+        None
     };
     let requests = match &frame {
         Some(file) => vec![file.request()],

@@ -134,9 +134,10 @@ pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
         || logs.is_instance_of::<Motion>()
         || logs.hasattr("__fspath__")?
         || is_frame(logs)?;
-    let items: Vec<Bound<'_, PyAny>> = match is_one {
-        true => vec![logs.clone()],
-        false => logs.try_iter()?.collect::<PyResult<_>>()?,
+    let items: Vec<Bound<'_, PyAny>> = if is_one {
+        vec![logs.clone()]
+    } else {
+        logs.try_iter()?.collect::<PyResult<_>>()?
     };
     if items.is_empty() {
         return Err(usage("no log is given", "name at least one"));

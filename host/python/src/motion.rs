@@ -302,11 +302,12 @@ fn is_whole(motion: &handstand::motion::Motion) -> PyResult<()> {
             "say what each drive was told at every sample, or cut the motion there",
         ));
     }
-    match motion.payload_kg.is_finite() && motion.payload_kg >= 0.0 {
-        true => Ok(()),
-        false => Err(usage(
+    if motion.payload_kg.is_finite() && motion.payload_kg >= 0.0 {
+        Ok(())
+    } else {
+        Err(usage(
             format!("a payload of {} kg", motion.payload_kg),
             "give 0 or more",
-        )),
+        ))
     }
 }

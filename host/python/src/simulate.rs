@@ -86,12 +86,13 @@ fn state(name: &str, given: Option<&Bound<'_, PyAny>>, rest: Vec<f64>) -> PyResu
         Ok(one) => vec![one],
         Err(_) => numbers(name, given)?,
     };
-    match values.len() == rest.len() && values.iter().all(|value| value.is_finite()) {
-        true => Ok(values),
-        false => Err(usage(
+    if values.len() == rest.len() && values.iter().all(|value| value.is_finite()) {
+        Ok(values)
+    } else {
+        Err(usage(
             format!("`{name}` is {values:?} for {} joints", rest.len()),
             "give a number per joint",
-        )),
+        ))
     }
 }
 

@@ -116,9 +116,10 @@ fn found(diagnosis: &Diagnosis) -> bool {
 /// The chosen explanation, to compare with.
 fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
     let after = diagnosis.error.after_rad;
-    let (fitted, held_out) = match diagnosis.error.held_out {
-        true => (NONE.to_string(), mrad(after)),
-        false => (mrad(after), NONE.to_string()),
+    let (fitted, held_out) = if diagnosis.error.held_out {
+        (NONE.to_string(), mrad(after))
+    } else {
+        (mrad(after), NONE.to_string())
     };
     html! {
         tr.best {

@@ -142,9 +142,10 @@ fn drawn(effect: &dyn Effect) -> String {
     let signature = signature(effect);
     let chart = chart(effect, &signature);
     let mut values = effect.info().parameters.iter().zip(&signature.values);
-    let note = match values.any(beyond_typical) {
-        true => " (more than typical, to be seen)",
-        false => "",
+    let note = if values.any(beyond_typical) {
+        " (more than typical, to be seen)"
+    } else {
+        ""
     };
     let legend = format!("line: {}{note}; dots: without", chart.curves[1].name);
     format!("{}\n{}", chart.text(), wrapped(&legend))

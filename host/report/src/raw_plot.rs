@@ -71,9 +71,10 @@ pub fn raw_text(log: &RawLog, names: &[String]) -> String {
     let column = |column: &RawColumn| {
         let drawn = format!("{}: {}", column.name, column.says);
         // A column that does not change has no course.
-        match column.says.contains(" to ") {
-            true => format!("{drawn}\n{}", column.chart.text()),
-            false => drawn,
+        if column.says.contains(" to ") {
+            format!("{drawn}\n{}", column.chart.text())
+        } else {
+            drawn
         }
     };
     let parts: Vec<String> = columns(log, names).iter().map(column).collect();

@@ -44,9 +44,10 @@ fn as_found(effect: &FittedEffect) -> Option<&'static dyn Effect> {
         let keys = of.info().parameters.iter().map(|parameter| parameter.key);
         keys.eq(effect.parameters.iter().map(|value| value.key.as_str()))
     };
-    match has(hinge) {
-        true => Some(hinge),
-        false => on_axis(hinge, Axis::Slide),
+    if has(hinge) {
+        Some(hinge)
+    } else {
+        on_axis(hinge, Axis::Slide)
     }
 }
 

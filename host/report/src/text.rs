@@ -180,9 +180,10 @@ fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Optio
 /// What was tried and not chosen: what does as well, then what does worse.
 fn not_chosen(diagnosis: &Diagnosis, as_good: bool) -> Option<String> {
     let rows = sorted(&diagnosis.ruled_out, as_good);
-    let title = match as_good {
-        true => "As good, not needed",
-        false => "Ruled out",
+    let title = if as_good {
+        "As good, not needed"
+    } else {
+        "Ruled out"
     };
     let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
     let mut table = plain_table([title, &fitted, &held_out, "BIC", "Why"]);

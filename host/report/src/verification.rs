@@ -6,9 +6,12 @@ use crate::study::{LimitedFigure, STABILISED_SHARE, Verification, VerifiedLaw, W
 ///
 /// Where joints slide, a spread in rad is as much in m.
 pub fn verification_text(verified: &Verification, slides: bool) -> String {
-    let also_mm = |rad: f64| match slides {
-        true => format!(" and {:.1} mm", 1e3 * rad),
-        false => String::new(),
+    let also_mm = |rad: f64| {
+        if slides {
+            format!(" and {:.1} mm", 1e3 * rad)
+        } else {
+            String::new()
+        }
     };
     // Where the search ends, the region may be larger.
     let reach = |rad: f64, open: bool| {
@@ -35,12 +38,13 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
     lines.extend(uncontrolled(verified));
     lines.push(lasting(verified));
     lines.extend(swing(verified, slides));
-    lines.push(match verified.region_rad > 0.0 {
-        true => format!(
+    lines.push(if verified.region_rad > 0.0 {
+        format!(
             "Largest cube of starts of which 95 % are stabilised: {}.",
             reach(verified.region_rad, verified.region_open)
-        ),
-        false => "There is no cube of starts of which 95 % are stabilised.".to_string(),
+        )
+    } else {
+        "There is no cube of starts of which 95 % are stabilised.".to_string()
     });
     lines.extend(ellipsoid(verified, slides));
     if !verified.without.is_empty() {

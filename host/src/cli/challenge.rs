@@ -121,9 +121,10 @@ pub fn text(score: &ChallengeScore) -> String {
             .into_iter()
             .chain(errors.iter().map(String::as_str)),
     );
-    let said = match score.solved {
-        true => "Solved: the model names what was hidden.",
-        false => "Not solved: the model does not name what was hidden.",
+    let said = if score.solved {
+        "Solved: the model names what was hidden."
+    } else {
+        "Not solved: the model does not name what was hidden."
     };
     let nominal = exact(1e3 * score.nominal_error_rad);
     format!("{table}\n\nnominal.toml leaves {nominal} mrad on c.csv.\n{said}")

@@ -23,9 +23,10 @@ pub fn run(args: &CompletionsArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "handstand", &mut script);
     let script = String::from_utf8_lossy(&script);
-    match talk.json {
-        true => talk.data(&serde_json::json!({ "script": script }))?,
-        false => talk.print(&script)?,
+    if talk.json {
+        talk.data(&serde_json::json!({ "script": script }))?
+    } else {
+        talk.print(&script)?
     }
     Ok(ExitStatus::Done)
 }

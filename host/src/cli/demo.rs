@@ -60,9 +60,10 @@ const ROBOT_SEED: u64 = 2;
 
 /// Runs the loop.
 pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
-    let (name, seed, takes) = match args.robot {
-        true => ("robot", ROBOT_SEED, "one to three minutes"),
-        false => ("bench", BENCH_SEED, "about half a minute"),
+    let (name, seed, takes) = if args.robot {
+        ("robot", ROBOT_SEED, "one to three minutes")
+    } else {
+        ("bench", BENCH_SEED, "about half a minute")
     };
     let output = match &args.output {
         Some(output) => output.clone(),
@@ -73,9 +74,10 @@ pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
         "This takes {takes} on a machine with two cores free."
     ));
     talk.say(&format!("Everything is written to {}", output.display()));
-    match args.robot {
-        true => robot(seed, &output, talk),
-        false => bench(args.effect.as_deref(), seed, &output, talk),
+    if args.robot {
+        robot(seed, &output, talk)
+    } else {
+        bench(args.effect.as_deref(), seed, &output, talk)
     }
 }
 

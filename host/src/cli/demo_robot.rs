@@ -87,16 +87,17 @@ fn names(logs: &[LogRequest]) -> String {
 
 fn said(attempt: &BalanceAttempt) -> String {
     let sway = attempt.sway_rms_rad.map(|rad| 1e3 * rad);
-    match attempt.stands {
-        true => format!(
+    if attempt.stands {
+        format!(
             "stands for {:.0} s and sways by {} mrad rms",
             attempt.stood_s,
             or_dash(sway, |mrad| format!("{mrad:.1}"))
-        ),
-        false => format!(
+        )
+    } else {
+        format!(
             "is let down after {:.1} s ({})",
             attempt.stood_s, attempt.end
-        ),
+        )
     }
 }
 

@@ -109,9 +109,10 @@ pub fn run(_: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
 fn text(ports: &[PortFound], tools: &[ToolFound]) -> String {
     let mut table = plain_table(["what", "where", "for"]);
     for port in ports {
-        let state = match port.may_open {
-            true => "may be opened",
-            false => "no permission",
+        let state = if port.may_open {
+            "may be opened"
+        } else {
+            "no permission"
         };
         table.add_row(["serial port", &port.name, state]);
     }
@@ -133,8 +134,9 @@ fn text(ports: &[PortFound], tools: &[ToolFound]) -> String {
 fn found(file: &str) -> Option<PathBuf> {
     let folders = std::env::var_os("PATH").unwrap_or_default();
     let mut places = std::env::split_paths(&folders).map(|folder| folder.join(file));
-    match Path::new(file).is_absolute() {
-        true => Some(PathBuf::from(file)).filter(|file| file.is_file()),
-        false => places.find(|place| place.is_file()),
+    if Path::new(file).is_absolute() {
+        Some(PathBuf::from(file)).filter(|file| file.is_file())
+    } else {
+        places.find(|place| place.is_file())
     }
 }

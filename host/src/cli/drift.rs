@@ -96,9 +96,10 @@ fn of(drift: &Drift, heading: &str) -> String {
         (true, Some(p)) => format!(
             "They differ: chance alone scatters as much in {}.{}",
             cases(p),
-            match drift.values.iter().any(|value| value.stands_out) {
-                true => "",
-                false => " None stands out by itself.",
+            if drift.values.iter().any(|value| value.stands_out) {
+                ""
+            } else {
+                " None stands out by itself."
             }
         ),
         (false, Some(p)) => format!("They agree: chance scatters as much in {}.", cases(p)),
@@ -109,8 +110,9 @@ fn of(drift: &Drift, heading: &str) -> String {
 
 /// "3.4 % of cases".
 fn cases(probability: f64) -> String {
-    match probability < 1e-6 {
-        true => "less than one of a million cases".to_string(),
-        false => format!("{} % of cases", exact(100.0 * probability)),
+    if probability < 1e-6 {
+        "less than one of a million cases".to_string()
+    } else {
+        format!("{} % of cases", exact(100.0 * probability))
     }
 }

@@ -72,9 +72,10 @@ pub fn run(args: &FlashArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(programmer) = &args.isp {
         return isp(args, programmer, talk);
     }
-    let image = match args.loader.any_program {
-        true => Image::load_any(&args.image)?,
-        false => Image::load(&args.image)?,
+    let image = if args.loader.any_program {
+        Image::load_any(&args.image)?
+    } else {
+        Image::load(&args.image)?
     };
     let facts = format!(
         "{}: {} bytes, checksum {:02X}",
@@ -203,8 +204,9 @@ pub fn agreed(yes: bool, question: &str) -> Result<()> {
     eprint!("{question} Type yes: ");
     let mut answer = String::new();
     let read = std::io::stdin().read_line(&mut answer);
-    match read.is_ok() && answer.trim() == "yes" {
-        true => Ok(()),
-        false => Err(Error::usage("not agreed to", "nothing was done")),
+    if read.is_ok() && answer.trim() == "yes" {
+        Ok(())
+    } else {
+        Err(Error::usage("not agreed to", "nothing was done"))
     }
 }

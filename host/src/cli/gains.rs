@@ -311,9 +311,10 @@ pub(super) fn write(
         put(file, &export::csv(design))?;
     }
     if let Some(file) = &args.state_space {
-        let text = match file.extension().is_some_and(|ending| ending == "m") {
-            true => export::matlab(design, made),
-            false => format!("{data:#}\n"),
+        let text = if file.extension().is_some_and(|ending| ending == "m") {
+            export::matlab(design, made)
+        } else {
+            format!("{data:#}\n")
         };
         put(file, &text)?;
     }

@@ -140,11 +140,12 @@ pub fn file(text: &str) -> Result<LogRequest, String> {
 pub fn log(text: &str) -> Result<LogRequest, String> {
     let request: LogRequest = text.parse().map_err(said)?;
     let ending = request.path.extension();
-    match ending.is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
-        true => Err(format!(
+    if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        Err(format!(
             "this is a model file, not a log; are the two swapped? {MODEL_FIRST}"
-        )),
-        false => Ok(request),
+        ))
+    } else {
+        Ok(request)
     }
 }
 
@@ -169,13 +170,14 @@ pub fn model_text(path: &Path) -> Result<String> {
 }
 
 fn no_log(path: &Path) -> Result<()> {
-    match LogFormat::is_log(path) && path.is_file() {
-        true => Err(Error::data(
+    if LogFormat::is_log(path) && path.is_file() {
+        Err(Error::data(
             Place::file(path),
             "this is a log, not a model file",
             format!("are the two swapped? {MODEL_FIRST}"),
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 
@@ -207,9 +209,10 @@ pub fn duration_s(text: &str) -> Result<f64, String> {
     };
     let time_s = positive(number.trim())? * unit_s;
     // A year is as good as no limit, and a clock can count it.
-    match time_s <= 3.2e7 {
-        true => Ok(time_s),
-        false => Err("give no more than a year, or leave it out".to_string()),
+    if time_s <= 3.2e7 {
+        Ok(time_s)
+    } else {
+        Err("give no more than a year, or leave it out".to_string())
     }
 }
 

@@ -145,13 +145,12 @@ fn open(address: &str, talk: &Talk) {
     } else {
         "xdg-open"
     };
-    let mut command = match cfg!(windows) {
-        true => {
-            let mut command = Command::new("cmd");
-            command.args(["/c", "start", ""]);
-            command
-        }
-        false => Command::new(program),
+    let mut command = if cfg!(windows) {
+        let mut command = Command::new("cmd");
+        command.args(["/c", "start", ""]);
+        command
+    } else {
+        Command::new(program)
     };
     let begun = command
         .arg(address)

@@ -84,22 +84,24 @@ fn text(answer: &LatencyBudget, servos: usize, args: &LatencyArgs) -> String {
             times.median, times.min, times.max, times.p99
         )
     };
-    let (bus, rest) = match args.robot.stream {
-        true => (
+    let (bus, rest) = if args.robot.stream {
+        (
             "the CM-5's tick, servos included",
             "waiting for the tick and behind its reports",
-        ),
-        false => (
+        )
+    } else {
+        (
             "servos' bus and return delay",
             "the rest (adapter, USB, drivers)",
-        ),
+        )
     };
     let limit = answer.limit_us.map_or(String::new(), |limit_us| {
         format!("; the line's limit is {limit_us:.0} us")
     });
-    let verdict = match answer.fits {
-        true => "fits".to_string(),
-        false => format!("does not fit: {}", remedy(answer, args)),
+    let verdict = if answer.fits {
+        "fits".to_string()
+    } else {
+        format!("does not fit: {}", remedy(answer, args))
     };
     format!(
         "round trip: {}\n  PC's line {:.0} us, {bus} {:.0} us, {rest} {:.0} us\n\

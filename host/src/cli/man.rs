@@ -32,9 +32,10 @@ pub fn run(args: &ManArgs, talk: &Talk) -> Result<ExitStatus> {
     command.build();
     let mut pages = Vec::new();
     write_pages(command, folder, args.force, &mut pages)?;
-    match talk.json {
-        true => talk.data(&serde_json::json!({ "pages": pages }))?,
-        false => talk.say(&format!("{} pages in {}", pages.len(), folder.display())),
+    if talk.json {
+        talk.data(&serde_json::json!({ "pages": pages }))?
+    } else {
+        talk.say(&format!("{} pages in {}", pages.len(), folder.display()))
     }
     Ok(ExitStatus::Done)
 }

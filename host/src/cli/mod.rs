@@ -249,9 +249,10 @@ pub enum ExitStatus {
 impl ExitStatus {
     /// The answer to what was asked: yes or no.
     pub fn answer(yes: bool) -> Self {
-        match yes {
-            true => ExitStatus::Done,
-            false => ExitStatus::Refused,
+        if yes {
+            ExitStatus::Done
+        } else {
+            ExitStatus::Refused
         }
     }
 

@@ -35,9 +35,10 @@ pub struct PaperArgs {
 /// Computes, prints, writes the page.
 pub fn run(args: &PaperArgs, talk: &Talk) -> Result<ExitStatus> {
     args.page.vacant()?;
-    let whole = match args.findings || args.page.is_wanted() {
-        true => Some(worked(talk)?),
-        false => None,
+    let whole = if args.findings || args.page.is_wanted() {
+        Some(worked(talk)?)
+    } else {
+        None
     };
     let (rows, computed) = match &whole {
         Some(study) => (study.rows.clone(), study.computed.clone()),

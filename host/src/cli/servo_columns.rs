@@ -182,13 +182,14 @@ fn column(text: &str) -> Result<Column, String> {
 
 fn of_dimension(text: &str, dimension: Dimension) -> Result<Column, String> {
     let column = column(text)?;
-    match column.unit.dimension == dimension {
-        true => Ok(column),
-        false => Err(format!(
+    if column.unit.dimension == dimension {
+        Ok(column)
+    } else {
+        Err(format!(
             "'{}' is no unit here; write one of {}",
             column.unit.name,
             dimension.unit_names().collect::<Vec<_>>().join(", ")
-        )),
+        ))
     }
 }
 

@@ -34,9 +34,10 @@ pub fn wide_table() -> Table {
 pub fn undetermined(refused: &Undetermined) -> String {
     let measured = refused.mixed.iter().find_map(|path| how_to_measure(path));
     let measured = measured.map_or(String::new(), |how| format!(" ({how})"));
-    let remedy = match refused.mixed.is_empty() {
-        true => "Fit fewer values, or record motions that show them.".to_string(),
-        false => format!("Measure one of them by itself{measured}, and leave it out of the fit."),
+    let remedy = if refused.mixed.is_empty() {
+        "Fit fewer values, or record motions that show them.".to_string()
+    } else {
+        format!("Measure one of them by itself{measured}, and leave it out of the fit.")
     };
     format!("refused: {refused}; nothing is written. {remedy}")
 }

@@ -32,9 +32,10 @@ pub fn open_with_attitude(text: &str, is_cm5: bool) -> Result<(AnyLink, Option<A
 /// The port of a CM-5 in front of this bus, or of an adapter on it.
 #[cfg(feature = "virtual-cm5")]
 pub fn link(bus: Bus, is_cm5: bool) -> AnyLink {
-    match is_cm5 {
-        true => Box::new(SimLink(Cm5Port::new(bus))),
-        false => Box::new(SimLink(AdapterPort::new(bus))),
+    if is_cm5 {
+        Box::new(SimLink(Cm5Port::new(bus)))
+    } else {
+        Box::new(SimLink(AdapterPort::new(bus)))
     }
 }
 

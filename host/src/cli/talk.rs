@@ -89,9 +89,10 @@ impl Talk {
     /// # Errors
     /// As [`Talk::print`].
     pub fn result(&self, data: &impl Serialize, text: impl FnOnce() -> String) -> Result<()> {
-        match self.json {
-            true => self.data(data),
-            false => self.print(&text()),
+        if self.json {
+            self.data(data)
+        } else {
+            self.print(&text())
         }
     }
 
@@ -107,10 +108,10 @@ impl Talk {
 
     /// A bar of `length` steps that shows only on a terminal, and no longer than it lives.
     pub fn bar(&self, length: u64) -> ProgressBar {
-        let bar = match self.quiet {
-            true => ProgressBar::hidden(),
-            // Draws on stderr, and only where that is a terminal.
-            false => ProgressBar::new(length),
+        let bar = if self.quiet {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::new(length)
         };
         let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}");
         bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
@@ -234,9 +235,12 @@ fn best(progress: &Progress) -> Option<String> {
 }
 
 fn left(progress: &Progress) -> Option<String> {
-    progress.left_s.map(|left_s| match left_s < 100.0 {
-        true => format!("at most {left_s:.0} s left"),
-        false => format!("at most {:.0} min left", (left_s / 60.0).ceil()),
+    progress.left_s.map(|left_s| {
+        if left_s < 100.0 {
+            format!("at most {left_s:.0} s left")
+        } else {
+            format!("at most {:.0} min left", (left_s / 60.0).ceil())
+        }
     })
 }
 

@@ -108,9 +108,10 @@ fn log(angle_rad: f64, push_n: f64, rates: [f64; 2]) -> String {
 fn stepped(state: State, force_n: f64, h: f64) -> State {
     let (_, left_n) = derivative(state, force_n, 0.0, true);
     let held = state[2] == 0.0 && left_n.abs() <= RAIL_N;
-    let direction = match state[2] == 0.0 {
-        true => left_n.signum(),
-        false => state[2].signum(),
+    let direction = if state[2] == 0.0 {
+        left_n.signum()
+    } else {
+        state[2].signum()
     };
     let slope = |at: State| derivative(at, force_n, -direction * RAIL_N, held).0;
     let ahead = |by: f64, slope: State| std::array::from_fn(|i| state[i] + by * slope[i]);

@@ -95,12 +95,11 @@ fn log(gyro: Gyro, start_rad: f64, rates: [f64; 2]) -> String {
             angle += h * w;
             let before = speed;
             speed += h * turns(q, w);
-            filtered = match gyro.lag_s > 0.0 {
-                true => {
-                    let kept = (-h / gyro.lag_s).exp();
-                    kept * filtered + (1.0 - kept) * 0.5 * (before + speed)
-                }
-                false => speed,
+            filtered = if gyro.lag_s > 0.0 {
+                let kept = (-h / gyro.lag_s).exp();
+                kept * filtered + (1.0 - kept) * 0.5 * (before + speed)
+            } else {
+                speed
             };
         }
     }

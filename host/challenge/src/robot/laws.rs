@@ -59,9 +59,12 @@ impl Laws {
         let mut on_base = LinksOnBase::of_mass(self.joints.iter().map(|link| link.mass_kg).sum());
         for (i, link) in self.joints.iter().enumerate() {
             // The way from the bar to this link's centre of mass: its parts' lengths and angles.
-            let part = |k: usize| match k == i {
-                true => (link.com_m, theta[i] + link.com_angle),
-                false => (self.length_m[k], theta[k]),
+            let part = |k: usize| {
+                if k == i {
+                    (link.com_m, theta[i] + link.com_angle)
+                } else {
+                    (self.length_m[k], theta[k])
+                }
             };
             for k in 0..=i {
                 let (long_k, at_k) = part(k);
@@ -111,12 +114,13 @@ impl Laws {
         speed: &Joints,
         histories: &[History; LINKS],
     ) -> Joints {
-        std::array::from_fn(|k| match self.joints[k].stall_nm > 0.0 {
-            true => {
+        std::array::from_fn(|k| {
+            if self.joints[k].stall_nm > 0.0 {
                 let drive = |speed| self.joints[k].drive(push[k], speed);
                 histories[k].passed_on(&self.joints[k], drive, speed[k])
+            } else {
+                0.0
             }
-            false => 0.0,
         })
     }
 

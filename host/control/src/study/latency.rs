@@ -66,9 +66,10 @@ impl SignalPath {
         let baud = self
             .baud
             .map_or(String::new(), |baud| format!(", {baud} baud"));
-        let delay = match self.factory {
-            true => "factory return delay",
-            false => "return delay 0",
+        let delay = if self.factory {
+            "factory return delay"
+        } else {
+            "return delay 0"
         };
         format!("law on the {law}, {} servos{baud}, {delay}", self.servos)
     }

@@ -158,9 +158,12 @@ pub static QUANTITIES: &[Quantity] = &[
                     case.drives.full_torque_nm = level;
                 }
             },
-            label: |level| match level.is_finite() {
-                true => given(level),
-                false => "no limit".to_string(),
+            label: |level| {
+                if level.is_finite() {
+                    given(level)
+                } else {
+                    "no limit".to_string()
+                }
             },
         }),
         spread: None,

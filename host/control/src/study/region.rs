@@ -107,9 +107,10 @@ pub fn region(
 /// Those of `stabilises`.
 pub(super) fn largest(mut stabilises: impl FnMut(f64) -> Result<bool>) -> Result<Region> {
     let open = stabilises(LARGEST_REGION_RAD)?;
-    let spread_rad = match open {
-        true => LARGEST_REGION_RAD,
-        false => bisect(0.0, LARGEST_REGION_RAD, HALVINGS, stabilises)?.0,
+    let spread_rad = if open {
+        LARGEST_REGION_RAD
+    } else {
+        bisect(0.0, LARGEST_REGION_RAD, HALVINGS, stabilises)?.0
     };
     Ok(Region { spread_rad, open })
 }
@@ -127,9 +128,10 @@ pub fn bisect(
 ) -> Result<(f64, f64)> {
     for _ in 0..halvings {
         let middle = 0.5 * (inside + outside);
-        match holds(middle)? {
-            true => inside = middle,
-            false => outside = middle,
+        if holds(middle)? {
+            inside = middle
+        } else {
+            outside = middle
         }
     }
     Ok((inside, outside))

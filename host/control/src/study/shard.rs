@@ -38,9 +38,10 @@ impl FromStr for Shard {
         let (index, of) = text.split_once('/').ok_or_else(wish)?;
         let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wish());
         let (index, of) = (number(index)?, number(of)?);
-        match (1..=of).contains(&index) {
-            true => Ok(Shard { index, of }),
-            false => Err(wish()),
+        if (1..=of).contains(&index) {
+            Ok(Shard { index, of })
+        } else {
+            Err(wish())
         }
     }
 }

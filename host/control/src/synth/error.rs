@@ -229,9 +229,10 @@ impl RiccatiRole {
 impl PlantMode {
     /// By what factor it grows within a sample; 1 in continuous time.
     fn grows_by(&self) -> f64 {
-        match self.sampled {
-            true => self.mode.pole.norm(),
-            false => 1.0,
+        if self.sampled {
+            self.mode.pole.norm()
+        } else {
+            1.0
         }
     }
 }

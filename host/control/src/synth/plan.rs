@@ -124,14 +124,17 @@ fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, PlanReason> {
     let timing = sampled.map(timing).transpose()?;
     let past = timing.map_or(0, |timing| timing.delayed_inputs);
     let states = past.saturating_mul(drives).saturating_add(2 * joints);
-    let sized = |key: &str, list: Vec<f64>, needed| match list.len() == needed {
-        true => Ok(list),
-        false => Err(PlanReason::Size {
-            key: key.to_string(),
-            found: list.len(),
-            needed,
-            model: model.name.clone(),
-        }),
+    let sized = |key: &str, list: Vec<f64>, needed| {
+        if list.len() == needed {
+            Ok(list)
+        } else {
+            Err(PlanReason::Size {
+                key: key.to_string(),
+                found: list.len(),
+                needed,
+                model: model.name.clone(),
+            })
+        }
     };
     let list = |key, needed| sized(key, numbers(key, value.get(key))?, needed);
     let u0 = list("u0", drives)?;

@@ -79,8 +79,9 @@ fn symmetric(
 fn least_eigenvalue(matrix: &DMatrix<f64>) -> f64 {
     let n = matrix.nrows();
     let diagonal = (0..n).all(|j| (0..n).all(|i| i == j || matrix[(i, j)] == 0.0));
-    match diagonal {
-        true => matrix.diagonal().min(),
-        false => matrix.symmetric_eigenvalues().min(),
+    if diagonal {
+        matrix.diagonal().min()
+    } else {
+        matrix.symmetric_eigenvalues().min()
     }
 }

@@ -140,9 +140,10 @@ fn search(structure: &Structure, records: &[Record], start: TransferModel) -> Mi
         };
         let values = DVector::from_vec(model.values(structure)) - step;
         let trial = TransferModel::of(structure, values.as_slice());
-        let cost = match is_usable(&trial) {
-            true => cost(records, &trial),
-            false => f64::INFINITY,
+        let cost = if is_usable(&trial) {
+            cost(records, &trial)
+        } else {
+            f64::INFINITY
         };
         if cost < normal.cost {
             converged = normal.cost - cost <= REST * normal.cost;

@@ -118,9 +118,10 @@ fn twins(model: &Model) -> Vec<usize> {
         let same = first.name() == own.name() && first.motor() == own.motor();
         same && axis(driven[0]) == axis(*joint)
     };
-    match driven.len() > 1 && driven.iter().all(alike) {
-        true => driven,
-        false => Vec::new(),
+    if driven.len() > 1 && driven.iter().all(alike) {
+        driven
+    } else {
+        Vec::new()
     }
 }
 

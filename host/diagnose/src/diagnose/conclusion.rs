@@ -97,12 +97,13 @@ fn ended(diagnosis: &Diagnosis) -> Option<String> {
         SearchEnded::Complete if diagnosis.left_out.is_empty() => return None,
         SearchEnded::Complete => "The time was over before all was judged",
     };
-    let left_out = match diagnosis.left_out.is_empty() {
-        true => String::new(),
-        false => format!(
+    let left_out = if diagnosis.left_out.is_empty() {
+        String::new()
+    } else {
+        format!(
             ". Not examined: {}. A longer search may say otherwise",
             diagnosis.left_out.join(", ")
-        ),
+        )
     };
     Some(format!("{why}{left_out}."))
 }
@@ -266,9 +267,10 @@ fn why_not(evidence: &VerdictEvidence, hypothesis: &Hypothesis) -> (bool, String
     let (evaluator, explanation) = (evidence.evaluator, evidence.explanation);
     // A value refitted alone is compared with the model as given.
     let alone = hypothesis.values.len() == 1 && hypothesis.search.free.len() == 1;
-    let base = match alone {
-        true => &evaluator.given,
-        false => &evaluator.base,
+    let base = if alone {
+        &evaluator.given
+    } else {
+        &evaluator.base
     };
     let chosen = explanation.hypothesis();
     let out = |why: &str| (false, why.to_string());

@@ -41,12 +41,13 @@ pub(super) fn error_budget(evidence: &VerdictEvidence) -> Vec<BudgetedPart> {
     let shares = parts.par_iter().filter_map(|part| {
         let given = evaluator.given.deciding()?;
         let all = chosen.deciding()?;
-        let (alone, without) = match only {
-            true => (all.clone(), given.clone()),
-            false => (
+        let (alone, without) = if only {
+            (all.clone(), given.clone())
+        } else {
+            (
                 alone(evidence, part).deciding()?.clone(),
                 without(evaluator, chosen, part).deciding()?.clone(),
-            ),
+            )
         };
         let share = |left: &BlockErrors, removed_from: &BlockErrors| BudgetShare {
             error_rad: left.rms_rad(),

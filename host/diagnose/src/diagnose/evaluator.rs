@@ -91,9 +91,10 @@ impl<'a> Evaluator<'a> {
         let mut candidates = candidates(model, &all, &options.without);
         candidates.retain(|candidate| !is_ruled_out(candidate, &options.known, model));
         // Without motions to judge by, two effects together can't be told from luck.
-        let most_effects = match held_out.is_empty() {
-            true => 1,
-            false => options.most_effects,
+        let most_effects = if held_out.is_empty() {
+            1
+        } else {
+            options.most_effects
         };
         course.begin(Stage::Base, reach == Reach::Everything, BASE_STEPS);
         let whole = FitData::new(model, training, Horizon::Whole).halted_by(&course.halt);
@@ -262,9 +263,10 @@ impl<'a> Evaluator<'a> {
         let best = hypotheses.iter().map(|h| h.search_mean);
         let far = FAR_BEHIND * best.chain(least).fold(f64::INFINITY, f64::min);
         hypotheses.par_iter_mut().for_each(|hypothesis| {
-            let options = match hypothesis.search_mean > far {
-                true => FitOptions::iterations(LOOK).rough(),
-                false => FitOptions::iterations(EVALUATE),
+            let options = if hypothesis.search_mean > far {
+                FitOptions::iterations(LOOK).rough()
+            } else {
+                FitOptions::iterations(EVALUATE)
             };
             hypothesis.evaluate(
                 &self.search,
@@ -285,9 +287,10 @@ impl<'a> Evaluator<'a> {
         least: Option<f64>,
     ) -> f64 {
         let means = hypotheses.map(|hypothesis| hypothesis.search_mean);
-        match self.small() {
-            true => f64::INFINITY,
-            false => HOPELESS * means.chain(least).fold(f64::INFINITY, f64::min),
+        if self.small() {
+            f64::INFINITY
+        } else {
+            HOPELESS * means.chain(least).fold(f64::INFINITY, f64::min)
         }
     }
 

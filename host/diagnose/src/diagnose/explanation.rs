@@ -131,9 +131,10 @@ impl<'a> VerdictEvidence<'a> {
             _ => false,
         };
         let open = |rivals: &[&Hypothesis]| rivals.iter().any(|rival| !self.says_the_same(rival));
-        match is_freed {
-            true => open(&self.as_good()),
-            false => open(rivals),
+        if is_freed {
+            open(&self.as_good())
+        } else {
+            open(rivals)
         }
     }
 

@@ -126,9 +126,10 @@ impl LogOutcome {
         let was_simulated = diagnosis.verdict != Verdict::Unfit;
         let error = |rad: f64| finite(rad).filter(|_| was_simulated);
         let name = serde_json::to_value(diagnosis.verdict).unwrap_or_default();
-        let said = match was_simulated {
-            true => headline(diagnosis),
-            false => diagnosis.summary.join(" "),
+        let said = if was_simulated {
+            headline(diagnosis)
+        } else {
+            diagnosis.summary.join(" ")
         };
         LogOutcome {
             key,

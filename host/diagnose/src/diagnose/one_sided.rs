@@ -11,29 +11,29 @@ const LEAST_GAIN: f64 = 0.97;
 /// What is missing where nothing was found, if motions of one side alone show it.
 pub(super) fn headline(diagnosis: &Diagnosis) -> Option<String> {
     let (held_out, names) = one_sided(diagnosis)?;
-    Some(match held_out {
-        true => format!(
+    Some(if held_out {
+        format!(
             "Something is missing that only motions held out show ({names}): the others do not \
-             tell what."
-        ),
-        false => format!(
+         tell what."
+        )
+    } else {
+        format!(
             "Something is missing that only fitted motions show ({names}): those held out prove \
-             nothing of it."
-        ),
+         nothing of it."
+        )
     })
 }
 
 /// What to do about it.
 pub(super) fn next(diagnosis: &Diagnosis) -> Option<String> {
     let (held_out, names) = one_sided(diagnosis)?;
-    Some(match held_out {
-        true => format!(
+    Some(if held_out {
+        format!(
             "Learn from a motion like {names}: record another, or fit it and hold out a different \
-             one."
-        ),
-        false => {
-            format!("Hold out a motion like {names}: record another, or take it out of the fit.")
-        }
+         one."
+        )
+    } else {
+        format!("Hold out a motion like {names}: record another, or take it out of the fit.")
     })
 }
 

@@ -148,9 +148,10 @@ impl<'a> Searched<'a> {
             Some(further) if further.ended == SearchEnded::Tolerance => *self = further,
             ended => {
                 let course = &self.evaluator.course;
-                self.ended = match course.is_accepted() {
-                    true => SearchEnded::Stopped,
-                    false => SearchEnded::Time,
+                self.ended = if course.is_accepted() {
+                    SearchEnded::Stopped
+                } else {
+                    SearchEnded::Time
                 };
                 let part = if ended.is_some() { "part of " } else { "" };
                 self.left_out.push(format!("{part}{SECOND}"));

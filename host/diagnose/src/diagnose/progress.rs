@@ -269,9 +269,10 @@ impl Steps {
         Progress {
             done: self.told,
             total: TOTAL,
-            what: match self.again && self.stage != Some(Stage::Judging) {
-                true => format!("second search: {what}").into(),
-                false => what.into(),
+            what: if self.again && self.stage != Some(Stage::Judging) {
+                format!("second search: {what}").into()
+            } else {
+                what.into()
             },
             best: self.best.clone(),
             left_s: left.into_iter().chain(limit).reduce(f64::min),

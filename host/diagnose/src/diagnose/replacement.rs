@@ -74,9 +74,10 @@ impl Evaluator<'_> {
                 let changes = changes(&local.fit, candidate, Sizes::Small, &self.search);
                 little.promise(&changes, all)
             };
-            let (values, share) = match in_place.1 < LEAST_SHARE {
-                true => on_top()?,
-                false => in_place,
+            let (values, share) = if in_place.1 < LEAST_SHARE {
+                on_top()?
+            } else {
+                in_place
             };
             let mut model = rest.model.clone();
             model.effects.push(candidate.instance(&values));
@@ -184,9 +185,10 @@ impl Evaluator<'_> {
         let mut steps = Vec::new();
         for path in paths {
             let value = path.get(&at.model)?;
-            let step = match value.abs() < MOVED {
-                true if paths.len() == 1 => MOVED * MOVED,
-                _ => MOVED * value,
+            let step = if value.abs() < MOVED && paths.len() == 1 {
+                MOVED * MOVED
+            } else {
+                MOVED * value
             };
             path.set(&mut model, value + step).then_some(())?;
             steps.push(step);

@@ -126,9 +126,10 @@ fn regress(linearised: &Linearised) -> DVector<f64> {
         columns[r].dot(columns[c]) / (lengths[r] * lengths[c])
     });
     for i in 0..count {
-        normal[(i, i)] += match i < probes {
-            true => (probes as f64 / excess).max(RIDGE),
-            false => 1e-9,
+        normal[(i, i)] += if i < probes {
+            (probes as f64 / excess).max(RIDGE)
+        } else {
+            1e-9
         };
     }
     let right = DVector::from_fn(count, |r, _| columns[r].dot(target) / lengths[r]);

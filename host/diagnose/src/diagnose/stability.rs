@@ -62,9 +62,10 @@ pub(super) fn most_raised(folds: &[Fold]) -> f64 {
 pub(super) fn warning(folds: &[Fold]) -> Option<String> {
     let lost = folds.iter().filter(|fold| !fold.gains).count();
     let raised = most_raised(folds);
-    let much = match raised > MOST_RAISED {
-        true => format!(", and raises the error up to {raised:.1} times"),
-        false => String::new(),
+    let much = if raised > MOST_RAISED {
+        format!(", and raises the error up to {raised:.1} times")
+    } else {
+        String::new()
     };
     (lost > 0).then(|| {
         format!(

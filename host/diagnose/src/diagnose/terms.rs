@@ -137,10 +137,12 @@ impl Range {
             _ => full,
         };
         let slides = model.joints[joint].slide.is_some();
-        let lever_m = |l: &Link| match slides {
-            // A force: no lever.
-            true => 1.0,
-            false => l.com_m.abs() + 0.3 * l.length_m,
+        let lever_m = |l: &Link| {
+            if slides {
+                1.0
+            } else {
+                l.com_m.abs() + 0.3 * l.length_m
+            }
         };
         let outer = model.links[joint..].iter();
         let outer: f64 = outer.map(|l| l.mass_kg * lever_m(l)).sum();

@@ -118,9 +118,10 @@ impl Signs {
     /// far above it.
     fn leaves_much(&self) -> bool {
         let share = (self.left - 1.0) / (self.before - 1.0);
-        let most_floors = match self.held_out {
-            true => MOST_FLOORS,
-            false => MOST_FLOORS_FITTED,
+        let most_floors = if self.held_out {
+            MOST_FLOORS
+        } else {
+            MOST_FLOORS_FITTED
         };
         self.left > FAR_OFF && (share > MOST_LEFT || self.left.sqrt() > most_floors)
     }

@@ -161,9 +161,10 @@ pub(super) fn what_was_found(effects: &[FittedEffect], wrong: &[WrongValue]) -> 
 /// others.
 fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
     let claimed: Vec<&WrongValue> = wrong.iter().filter(|w| !w.free).collect();
-    let wrong = match claimed.is_empty() {
-        true => wrong.iter().collect(),
-        false => claimed,
+    let wrong = if claimed.is_empty() {
+        wrong.iter().collect()
+    } else {
+        claimed
     };
     match (effects, wrong.as_slice()) {
         ([], []) => "the model needs no more than its free values refitted".to_string(),
@@ -261,9 +262,10 @@ pub fn error_line(diagnosis: &Diagnosis, (unit, per_si): (&str, f64)) -> String 
         Verdict::Ambiguous if !diagnosis.alternatives.is_empty() => "With the first of them the",
         _ => "The",
     };
-    let changes = match error.after_rad < error.before_rad {
-        true => "falls",
-        false => "goes",
+    let changes = if error.after_rad < error.before_rad {
+        "falls"
+    } else {
+        "goes"
     };
     format!(
         "{with} error on {motions} motions {changes} from {before} to {after} {unit}; the floor is \
@@ -326,9 +328,10 @@ fn refit(diagnosis: &Diagnosis) -> Vec<String> {
 
 /// The option that holds motions out, and the motions that are judged.
 fn held_out(diagnosis: &Diagnosis) -> (String, &'static str) {
-    match diagnosis.error.held_out {
-        true => (format!(" --holdout {HELD_OUT}"), HELD_OUT),
-        false => (String::new(), LOGS),
+    if diagnosis.error.held_out {
+        (format!(" --holdout {HELD_OUT}"), HELD_OUT)
+    } else {
+        (String::new(), LOGS)
     }
 }
 

@@ -69,9 +69,10 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
                 .map_or(goal, |row| row[at]);
             let rate = (next - goal) * limits.hz;
             let is_on = goals.excitation.torque_on[k];
-            let sent = match is_on {
-                true => regulator.sent(&plant, &state, &angles, joint, (goal, rate)),
-                false => 0.0,
+            let sent = if is_on {
+                regulator.sent(&plant, &state, &angles, joint, (goal, rate))
+            } else {
+                0.0
             };
             if let Some(input) = &mut motion.input[joint] {
                 // As the file has it.

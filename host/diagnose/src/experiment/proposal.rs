@@ -101,9 +101,10 @@ impl RivalName {
     pub(super) fn of(effects: &[FittedEffect], values: &[String]) -> RivalName {
         let effects: Vec<String> = effects.iter().map(FittedEffect::address).collect();
         let all: Vec<&str> = effects.iter().chain(values).map(String::as_str).collect();
-        let name = match all.is_empty() {
-            true => "the model with its free values refitted".to_string(),
-            false => all.join(" + "),
+        let name = if all.is_empty() {
+            "the model with its free values refitted".to_string()
+        } else {
+            all.join(" + ")
         };
         RivalName {
             effects,

@@ -198,9 +198,10 @@ fn ranked<'a>(mut judged: Vec<Judged<'a>>, possible: &[bool]) -> Vec<Judged<'a>>
     judged.sort_by(|(a, apart_a), (b, apart_b)| {
         let (least_a, least_b) = (closest(apart_a, possible), closest(apart_b, possible));
         let ample = (least_b >= AMPLE).cmp(&(least_a >= AMPLE));
-        let changes = match least_a >= AMPLE && least_b >= AMPLE {
-            true => a.effort().0.cmp(&b.effort().0),
-            false => std::cmp::Ordering::Equal,
+        let changes = if least_a >= AMPLE && least_b >= AMPLE {
+            a.effort().0.cmp(&b.effort().0)
+        } else {
+            std::cmp::Ordering::Equal
         };
         let farther = least_b.total_cmp(&least_a);
         ample

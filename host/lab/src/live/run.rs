@@ -32,14 +32,16 @@ impl LiveTask {
     /// # Errors
     /// A time or share that is none.
     fn check(self) -> Result<()> {
-        let within =
-            |what: &str, value: f64, low: f64, high: f64| match (low..=high).contains(&value) {
-                true => Ok(()),
-                false => Err(Error::usage(
+        let within = |what: &str, value: f64, low: f64, high: f64| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(Error::usage(
                     format!("{what} {value} does not fit"),
                     format!("give {low} to {high}"),
-                )),
-            };
+                ))
+            }
+        };
         let (LiveTask::Record { seconds } | LiveTask::Balance { seconds, .. }) = self;
         within("a time of", seconds.unwrap_or(1.0), 0.01, 1e6)?;
         match self {

@@ -194,9 +194,10 @@ impl LiveRobot {
     /// It was stopped at once.
     pub fn goes_on(&self) -> Result<bool> {
         let control = self.lock();
-        match control.at_once {
-            true => Err(Error::usage("stopped at once", "torque is off")),
-            false => Ok(!control.stop && control.is_watched()),
+        if control.at_once {
+            Err(Error::usage("stopped at once", "torque is off"))
+        } else {
+            Ok(!control.stop && control.is_watched())
         }
     }
 

@@ -185,9 +185,12 @@ fn failures(failures: &[Failure]) -> Markup {
 }
 
 fn signals(signals: &[SignalError], evaluation: &SessionEvaluation) -> Markup {
-    let words = |signal: &SignalError, error: f64| match signal.beside_angle {
-        true => format!("{} {}", mrad(error), signal.quantity.milli()),
-        false => evaluation.shown(signal.joint - 1).error_words(error),
+    let words = |signal: &SignalError, error: f64| {
+        if signal.beside_angle {
+            format!("{} {}", mrad(error), signal.quantity.milli())
+        } else {
+            evaluation.shown(signal.joint - 1).error_words(error)
+        }
     };
     html! {
         div.scroll tabindex="0" { table {

@@ -108,9 +108,10 @@ fn evidence(card: &SavedCard, evaluation: &SessionEvaluation) -> String {
 }
 
 fn add(card: &SavedCard, saved: &SavedSession) -> Markup {
-    let (send, names, verb) = match card.effects.is_empty() {
-        false => ("add", card.effects.join("+"), "Add it"),
-        true => ("fit", card.values.join("+"), "Fit it"),
+    let (send, names, verb) = if !card.effects.is_empty() {
+        ("add", card.effects.join("+"), "Add it")
+    } else {
+        ("fit", card.values.join("+"), "Fit it")
     };
     html! {
         form.row data-send=(send) {

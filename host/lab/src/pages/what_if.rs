@@ -88,9 +88,10 @@ fn library(model: &Model, candidates: &[Candidate]) -> Value {
             None if value == 0.0 => range_of_zero(model, path),
             None => (0.25 * value.abs(), 4.0 * value.abs()),
         };
-        let (low, high) = match value < 0.0 && low > value {
-            true => (-high, -low),
-            false => (low, high),
+        let (low, high) = if value < 0.0 && low > value {
+            (-high, -low)
+        } else {
+            (low, high)
         };
         let meaning = parameter(model, path).map_or("", |parameter| parameter.meaning);
         Some(entry(path, value, (low, high), meaning))

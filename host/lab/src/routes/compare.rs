@@ -81,9 +81,12 @@ pub(super) async fn curves(
             saved.window = seconds.map_or(ChosenWindow::Whole, ChosenWindow::Seconds);
         }
         let step = asked.step.unwrap_or(saved.current);
-        let made = |step| match asked.moving {
-            true => roughly(&session, &saved, step),
-            false => exactly(&session, &saved, step),
+        let made = |step| {
+            if asked.moving {
+                roughly(&session, &saved, step)
+            } else {
+                exactly(&session, &saved, step)
+            }
         };
         let evaluation: Arc<SessionEvaluation> = made(step)?;
         let other = asked.other.map(made).transpose()?;
@@ -119,9 +122,10 @@ fn roughly(
     step: usize,
 ) -> Result<Arc<SessionEvaluation>, LabError> {
     let own = exactly(session, &session.view(), step)?;
-    match own.run.horizon == tried.horizon() {
-        true => Ok(own),
-        false => Ok(Arc::new(own.roughly_at(tried.horizon()))),
+    if own.run.horizon == tried.horizon() {
+        Ok(own)
+    } else {
+        Ok(Arc::new(own.roughly_at(tried.horizon())))
     }
 }
 
@@ -153,9 +157,10 @@ pub(super) fn draw(
             // Goals are read as the angles beside them are.
             let shown = evaluation.shown(joint);
             let like_angle = unit == "rad" && shown.unit == "deg";
-            let (unit, per_si) = match like_angle {
-                true => (shown.unit, shown.per_si),
-                false => (unit, 1.0),
+            let (unit, per_si) = if like_angle {
+                (shown.unit, shown.per_si)
+            } else {
+                (unit, 1.0)
             };
             json!({ "name": name, "unit": unit, "per_si": per_si })
         }));

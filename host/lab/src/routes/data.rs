@@ -178,9 +178,10 @@ pub(super) async fn model(
 ) -> Answer {
     act(lab, number, "data", move |session, saved| {
         shown.check(saved)?;
-        match saved.steps.is_empty() {
-            true => session.begin_model("as given", &text.toml)?,
-            false => session.push_step(SavedStep::by_hand("edited by hand", text.toml))?,
+        if saved.steps.is_empty() {
+            session.begin_model("as given", &text.toml)?
+        } else {
+            session.push_step(SavedStep::by_hand("edited by hand", text.toml))?
         }
         Ok(())
     })

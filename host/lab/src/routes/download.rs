@@ -61,9 +61,10 @@ fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError
         model_files.push(HashedModel::of(format!("model-{step}.toml"), text));
         split = Split::default();
         for (index, motion) in evaluation.run.data.motions.iter().enumerate() {
-            let side = match evaluation.is_held_out(index) {
-                true => &mut split.held_out,
-                false => &mut split.training,
+            let side = if evaluation.is_held_out(index) {
+                &mut split.held_out
+            } else {
+                &mut split.training
             };
             side.push(motion.clone());
         }

@@ -71,11 +71,12 @@ pub(super) async fn begin(
 ) -> Answer {
     let robot = robot(&lab, number)?;
     let session = session(&lab, number)?;
-    match live::begin(&robot, session, asked.viewer, asked.task)? {
-        true => Ok(reply(&json!({ "begun": true }))),
-        false => Err(LabError::Conflict(
+    if live::begin(&robot, session, asked.viewer, asked.task)? {
+        Ok(reply(&json!({ "begun": true })))
+    } else {
+        Err(LabError::Conflict(
             "the robot is busy, or this page no longer hears of it: reload the page".into(),
-        )),
+        ))
     }
 }
 
@@ -91,11 +92,12 @@ pub(super) async fn answer(
     Path(number): Path<u32>,
     Json(said): Json<Said>,
 ) -> Answer {
-    match robot(&lab, number)?.answer(said.viewer, said.yes) {
-        true => Ok(reply(&json!({ "answered": said.yes }))),
-        false => Err(LabError::Conflict(
+    if robot(&lab, number)?.answer(said.viewer, said.yes) {
+        Ok(reply(&json!({ "answered": said.yes })))
+    } else {
+        Err(LabError::Conflict(
             "only the page that began may answer".into(),
-        )),
+        ))
     }
 }
 

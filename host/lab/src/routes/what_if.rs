@@ -105,9 +105,10 @@ pub(super) async fn run(
         let base = base.ok_or(LabError::NotFound("comparison"))?;
         let (model, _) = tried.applied_to(&base.run.model)?;
         let (data, horizon) = (base.run.data.clone(), base.run.horizon);
-        let run = match tried.moving {
-            true => ModelRun::from_nodes(model, data, horizon, base.run.nodes.clone()),
-            false => ModelRun::new(model, data, horizon),
+        let run = if tried.moving {
+            ModelRun::from_nodes(model, data, horizon, base.run.nodes.clone())
+        } else {
+            ModelRun::new(model, data, horizon)
         };
         let predicted = run.predicted.get(tried.motion);
         let mut arrays = Arrays::default();

@@ -176,9 +176,10 @@ fn tried(tried: &RuledOut) -> SavedCard {
         .cloned()
         .partition(|name| name.contains('.'));
     SavedCard {
-        role: match tried.as_good {
-            true => CardRole::NotNeeded,
-            false => CardRole::RuledOut,
+        role: if tried.as_good {
+            CardRole::NotNeeded
+        } else {
+            CardRole::RuledOut
         },
         effects,
         values,

@@ -22,9 +22,10 @@ impl SavedSession {
     /// Logs to learn from; those to judge by where there are no others.
     fn training_words(&self) -> String {
         let training = self.log_words(false);
-        match training.is_empty() {
-            true => self.log_words(true),
-            false => training,
+        if training.is_empty() {
+            self.log_words(true)
+        } else {
+            training
         }
     }
 
@@ -41,9 +42,10 @@ impl SavedSession {
     pub fn compare_command(&self) -> String {
         let horizon = horizon_words(Some(self.horizon()));
         let all = [self.training_words(), self.log_words(true)];
-        let all = match self.log_words(false).is_empty() {
-            true => all[0].clone(),
-            false => all.join(" ").trim().to_string(),
+        let all = if self.log_words(false).is_empty() {
+            all[0].clone()
+        } else {
+            all.join(" ").trim().to_string()
         };
         let others: String = (1..=self.current)
             .map(|step| format!(" --model {}", model_file(step).display()))

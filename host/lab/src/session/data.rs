@@ -218,15 +218,16 @@ impl LabSession {
             let logs = saved.logs.iter().filter(|log| log.held_out == held_out);
             logs.map(request).collect()
         };
-        match saved.logs.iter().all(|log| log.held_out) {
-            true => LogSet {
+        if saved.logs.iter().all(|log| log.held_out) {
+            LogSet {
                 training: of(true),
                 held_out: Vec::new(),
-            },
-            false => LogSet {
+            }
+        } else {
+            LogSet {
                 training: of(false),
                 held_out: of(true),
-            },
+            }
         }
     }
 
@@ -257,9 +258,12 @@ pub(super) fn model_file(step: usize) -> PathBuf {
 /// The last part of a name, in letters that no file system and no page can misread.
 fn plain_name(name: &str) -> Result<String> {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
-    let plain = |c: char| match c.is_ascii_alphanumeric() || "._-".contains(c) {
-        true => c,
-        false => '_',
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() || "._-".contains(c) {
+            c
+        } else {
+            '_'
+        }
     };
     let plain: String = last.chars().map(plain).collect();
     let plain = plain.trim_start_matches('.');

@@ -188,9 +188,10 @@ impl SavedSession {
         };
         let saved: SavedSession =
             serde_json::from_str(&text).map_err(|error| broken(error.to_string()))?;
-        match saved.is_sound() {
-            true => Ok(saved),
-            false => Err(broken("another version of this program wrote it".into())),
+        if saved.is_sound() {
+            Ok(saved)
+        } else {
+            Err(broken("another version of this program wrote it".into()))
         }
     }
 

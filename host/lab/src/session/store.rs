@@ -76,9 +76,10 @@ impl SessionStore {
                 .keys()
                 .any(|number| !open.taken.contains(number))
         };
-        match waiting {
-            true => Ok(None),
-            false => self.begin().map(Some),
+        if waiting {
+            Ok(None)
+        } else {
+            self.begin().map(Some)
         }
     }
 

@@ -107,9 +107,10 @@ impl LabSession {
             })
         };
         let refused: Vec<LeftOutLog> = saved.logs.iter().filter_map(refused).collect();
-        match refused.len() == saved.logs.len() {
-            true => Vec::new(),
-            false => refused,
+        if refused.len() == saved.logs.len() {
+            Vec::new()
+        } else {
+            refused
         }
     }
 

@@ -235,11 +235,12 @@ fn undetermined(why: &Undetermined) -> Error {
 
 pub(super) fn unchanged(saved: &SavedSession, begun: &SavedSession) -> Result<()> {
     let key = |s: &SavedSession| (s.logs.clone(), s.current, s.step().cloned());
-    match key(saved) == key(begun) {
-        true => Ok(()),
-        false => Err(Error::usage(
+    if key(saved) == key(begun) {
+        Ok(())
+    } else {
+        Err(Error::usage(
             "the model or the logs were changed meanwhile",
             "begin again: the result would be of what was there before",
-        )),
+        ))
     }
 }

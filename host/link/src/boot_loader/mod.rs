@@ -108,9 +108,10 @@ impl<L: SerialLink> BootLoader<L> {
         // What was sent may come back as an echo, and the prompt ends it.
         let said = answer.trim_end_matches(PROMPT).trim();
         let said = said.strip_prefix("verify").unwrap_or(said).trim();
-        match lower.contains("error") || lower.contains("fail") {
-            true => Err(BootLoaderError::Verify { reply: said.into() }),
-            false => Ok(said.to_string()),
+        if lower.contains("error") || lower.contains("fail") {
+            Err(BootLoaderError::Verify { reply: said.into() })
+        } else {
+            Ok(said.to_string())
         }
     }
 
@@ -204,11 +205,12 @@ fn judge(answer: &str, image: &Image) -> Result<()> {
             theirs: sums,
         });
     }
-    match answer.contains("Success") && !size.is_empty() {
-        true => Ok(()),
-        false => Err(BootLoaderError::Failed {
+    if answer.contains("Success") && !size.is_empty() {
+        Ok(())
+    } else {
+        Err(BootLoaderError::Failed {
             reply: answer.trim().into(),
-        }),
+        })
     }
 }
 

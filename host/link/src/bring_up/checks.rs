@@ -120,9 +120,10 @@ fn servos<L: SerialLink>(link: &mut L, ids: &[u8]) -> CheckOutcome {
             found.push(format!("servo {id} answers {answers} of {PINGS}"));
         }
     }
-    Ok(match found.is_empty() {
-        true => (true, format!("{} servos, {PINGS} pings each", ids.len())),
-        false => (false, found.join(", ")),
+    Ok(if found.is_empty() {
+        (true, format!("{} servos, {PINGS} pings each", ids.len()))
+    } else {
+        (false, found.join(", "))
     })
 }
 

@@ -142,9 +142,10 @@ impl<L: SerialLink> GroupAdapter<L> {
             let is_bound = modes[place] == 3;
             limits.push(GoalLimits {
                 id: *id,
-                codes: match is_bound {
-                    true => (least[place], most[place]),
-                    false => (GOAL_POSITION.min, GOAL_POSITION.max),
+                codes: if is_bound {
+                    (least[place], most[place])
+                } else {
+                    (GOAL_POSITION.min, GOAL_POSITION.max)
                 },
                 registers: is_bound.then_some((MIN_POSITION.name, MAX_POSITION.name)),
             });
@@ -214,9 +215,10 @@ impl<L: SerialLink> GroupAdapter<L> {
         if self.silent[turn] > 0 {
             return Ok(());
         }
-        let (address, size) = match watches {
-            true => (BUS_WATCHDOG.address, 1),
-            false => HEALTH,
+        let (address, size) = if watches {
+            (BUS_WATCHDOG.address, 1)
+        } else {
+            HEALTH
         };
         self.servos.tries = 1;
         let answer = self.servos.read(id, address, size);

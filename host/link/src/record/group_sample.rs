@@ -46,9 +46,10 @@ impl ServoSample {
             data: all.data[from..from + usize::from(count)].to_vec(),
         };
         let health = health(&part(usize::from(HEALTH.0 - STATE.0), HEALTH.1));
-        let errors = match all.error.has_alert() {
-            true => servos.hardware_errors(id)?,
-            false => Vec::new(),
+        let errors = if all.error.has_alert() {
+            servos.hardware_errors(id)?
+        } else {
+            Vec::new()
         };
         let sample = ServoSample {
             supply_v: health.map(|(supply_v, _)| supply_v),

@@ -117,9 +117,10 @@ pub fn answering<L: SerialLink>(
     streams: bool,
     protocol: Option<Protocol>,
 ) -> Result<Answering> {
-    let mut servos = match streams {
-        true => bridged(link)?,
-        false => Servos::new(link),
+    let mut servos = if streams {
+        bridged(link)?
+    } else {
+        Servos::new(link)
     };
     // A CM-5 reads servos of Protocol 1.0 only.
     servos.protocol = if streams {

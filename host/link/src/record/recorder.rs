@@ -73,9 +73,10 @@ impl RobotRecorder {
             _ => Error::file(path, "write", error),
         };
         // Under its own name from the start: a crash must leave it where it is looked for.
-        let file = match force {
-            true => File::create(path),
-            false => File::create_new(path),
+        let file = if force {
+            File::create(path)
+        } else {
+            File::create_new(path)
         }
         .map_err(refused)?;
         let own = file.try_clone().map_err(refused)?;

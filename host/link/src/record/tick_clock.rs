@@ -53,9 +53,10 @@ impl TickClock {
         let older_s = least_s(&mut self.late_s.iter().rev().skip(NEWEST));
         // With few reports nothing is older, and nothing known.
         let is_on_grid = older_s.is_finite() && newest_s - older_s < MOST_LATE_S;
-        let time_s = match is_on_grid {
-            true => grid_s + newest_s.min(older_s),
-            false => arrival_s,
+        let time_s = if is_on_grid {
+            grid_s + newest_s.min(older_s)
+        } else {
+            arrival_s
         };
         self.told_s = time_s.max(self.told_s + 0.1 * PERIOD_S);
         self.told_s

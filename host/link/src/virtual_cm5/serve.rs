@@ -32,9 +32,10 @@ pub fn serve(
             last_byte = now;
         }
         // Replies are near while the line is busy; an idle port should cost nothing.
-        let wait = match now.saturating_sub(last_byte) < BUSY {
-            true => Duration::from_micros(100),
-            false => Duration::from_millis(2),
+        let wait = if now.saturating_sub(last_byte) < BUSY {
+            Duration::from_micros(100)
+        } else {
+            Duration::from_millis(2)
         };
         let count = pty.receive(&mut bytes, wait)?;
         if count > 0 {

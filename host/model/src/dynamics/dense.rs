@@ -58,9 +58,10 @@ impl<const N: usize> Dense<N> {
     ) -> [f64; N] {
         let (angle, speed, load) = absolute(angle_rad, speed_rad_s, torque_nm);
         let (mass, rest) = self.equations(&angle, &speed, &load);
-        match held.contains(&true) {
-            false => differences(solve_at_once(&mass, &rest)),
-            true => forward_held(mass, rest, held),
+        if !held.contains(&true) {
+            differences(solve_at_once(&mass, &rest))
+        } else {
+            forward_held(mass, rest, held)
         }
     }
 

@@ -146,9 +146,12 @@ impl EquationsOfMotion {
             return Jacobians::new(chain, angle_rad).coriolis(chain, speed_rad_s);
         }
         let turned = self.turned(angle_rad);
-        let mut c = self.square(|i, j| match i == j {
-            true => 0.0,
-            false => coupling(&turned[i], &turned[j])[1],
+        let mut c = self.square(|i, j| {
+            if i == j {
+                0.0
+            } else {
+                coupling(&turned[i], &turned[j])[1]
+            }
         });
         for (j, speed) in absolute(speed_rad_s).into_iter().enumerate() {
             c.column_mut(j).scale_mut(speed);

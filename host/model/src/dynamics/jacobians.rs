@@ -86,9 +86,12 @@ impl Jacobians {
 
     /// G(q).
     pub fn gravity(&self, chain: &Chain, base_m_s2: [f64; 2]) -> DVector<f64> {
-        let weighed = self.sum(chain, |link, of, i, j| match i == j {
-            true => link.mass_kg * dot(base_m_s2, of[i]),
-            false => 0.0,
+        let weighed = self.sum(chain, |link, of, i, j| {
+            if i == j {
+                link.mass_kg * dot(base_m_s2, of[i])
+            } else {
+                0.0
+            }
         });
         weighed.diagonal()
     }
@@ -102,9 +105,10 @@ impl Jacobians {
 
     /// Second derivative of the centre of mass that `of` belongs to.
     fn second(&self, of: &[[f64; 2]], i: usize, j: usize) -> [f64; 2] {
-        match self.hinge[i.min(j)] {
-            true => left(of[i.max(j)]),
-            false => [0.0; 2],
+        if self.hinge[i.min(j)] {
+            left(of[i.max(j)])
+        } else {
+            [0.0; 2]
         }
     }
 

@@ -25,9 +25,10 @@ impl LinkMotion {
     #[inline(always)]
     pub fn new(link: &ChainLink, angle_rad: f64, speed_rad_s: f64) -> LinkMotion {
         let (sin, cos) = Lane::sin_cos(angle_rad);
-        let (com_sin, com_cos) = match link.com_angle_rad == 0.0 {
-            true => (sin, cos),
-            false => Lane::sin_cos(angle_rad + link.com_angle_rad),
+        let (com_sin, com_cos) = if link.com_angle_rad == 0.0 {
+            (sin, cos)
+        } else {
+            Lane::sin_cos(angle_rad + link.com_angle_rad)
         };
         let first_moment = link.mass_kg * link.com_m;
         let speed_squared = speed_rad_s * speed_rad_s;

@@ -79,12 +79,13 @@ pub(super) fn sin_cos<const L: usize>(angle: [f64; L]) -> ([f64; L], [f64; L]) {
 #[cold]
 #[inline(never)]
 fn apart<const L: usize>(angle: [f64; L]) -> ([f64; L], [f64; L]) {
-    let both = angle.map(|angle| match angle.abs() < FAR {
-        true => {
+    let both = angle.map(|angle| {
+        if angle.abs() < FAR {
             let ([sin], [cos]) = sin_cos([angle]);
             (sin, cos)
+        } else {
+            angle.sin_cos()
         }
-        false => angle.sin_cos(),
     });
     (both.map(|both| both.0), both.map(|both| both.1))
 }

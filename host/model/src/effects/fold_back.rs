@@ -106,8 +106,9 @@ impl Effect for FoldBack {
 /// Share of a way from one time to another that lies above a third.
 fn share_above(limit_s: f64, from_s: f64, to_s: f64) -> f64 {
     let (low_s, high_s) = (from_s.min(to_s), from_s.max(to_s));
-    match high_s > low_s {
-        true => ((high_s - limit_s) / (high_s - low_s)).clamp(0.0, 1.0),
-        false => f64::from(from_s >= limit_s),
+    if high_s > low_s {
+        ((high_s - limit_s) / (high_s - low_s)).clamp(0.0, 1.0)
+    } else {
+        f64::from(from_s >= limit_s)
     }
 }

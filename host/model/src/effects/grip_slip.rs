@@ -125,9 +125,10 @@ impl Slip {
                 self.speed_rad_s = 0.0;
                 return;
             }
-            let direction = match self.speed_rad_s == 0.0 {
-                true => joint_rad_s2.signum(),
-                false => self.speed_rad_s.signum(),
+            let direction = if self.speed_rad_s == 0.0 {
+                joint_rad_s2.signum()
+            } else {
+                self.speed_rad_s.signum()
             };
             let change_rad_s2 = joint_rad_s2 - direction * grip_rad_s2;
             let until_s = -self.speed_rad_s / change_rad_s2;

@@ -32,13 +32,14 @@ pub fn on_axis(effect: &'static dyn Effect, axis: Axis) -> Option<&'static dyn E
         _ if effect.info().scope == Scope::WholeRig => Some(effect),
         (Axis::Hinge, Axis::Hinge) | (Axis::Slide, Axis::Slide) => Some(effect),
         (Axis::Slide, Axis::Hinge) => super::named(id),
-        (Axis::Hinge, Axis::Slide) => match std::ptr::eq(effect.slide_info()?, effect.info()) {
-            true => Some(effect),
-            false => {
+        (Axis::Hinge, Axis::Slide) => {
+            if std::ptr::eq(effect.slide_info()?, effect.info()) {
+                Some(effect)
+            } else {
                 let own = ON_SLIDE.iter().find(|own| own.info.id == id)?;
                 Some(own)
             }
-        },
+        }
     }
 }
 

@@ -61,9 +61,10 @@ impl Effect for SlewLimit {
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
-        memory[0] = match at.energised {
-            true => reached(values[0], memory[0], at.input, step_s),
-            false => at.input,
+        memory[0] = if at.energised {
+            reached(values[0], memory[0], at.input, step_s)
+        } else {
+            at.input
         };
     }
 
@@ -73,9 +74,10 @@ impl Effect for SlewLimit {
         if way.is_nan() || !rate.is_finite() || step_s <= 0.0 {
             return input;
         }
-        match way.abs() > rate * step_s {
-            true => memory[0] + 0.5 * rate * step_s * way.signum(),
-            false => input - 0.5 * way * way.abs() / (rate * step_s),
+        if way.abs() > rate * step_s {
+            memory[0] + 0.5 * rate * step_s * way.signum()
+        } else {
+            input - 0.5 * way * way.abs() / (rate * step_s)
         }
     }
 
@@ -86,8 +88,9 @@ impl Effect for SlewLimit {
 
 /// Input that is obeyed at the end of a step.
 fn reached(rate: f64, before: f64, input: f64, step_s: f64) -> f64 {
-    match (input - before).abs() > rate * step_s {
-        true => before + rate * step_s * (input - before).signum(),
-        false => input,
+    if (input - before).abs() > rate * step_s {
+        before + rate * step_s * (input - before).signum()
+    } else {
+        input
     }
 }

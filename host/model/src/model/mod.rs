@@ -252,9 +252,10 @@ impl Model {
     /// of the first joint that turns, else 0.
     pub fn zero_rad(&self, joint: usize) -> f64 {
         let first = self.joints.iter().position(|joint| joint.slide.is_none());
-        match first == Some(joint) {
-            true => self.angle_zero.from_hanging_rad(),
-            false => 0.0,
+        if first == Some(joint) {
+            self.angle_zero.from_hanging_rad()
+        } else {
+            0.0
         }
     }
 

@@ -319,9 +319,10 @@ impl<'a> Table<'a> {
 
     fn child(&self, key: &str) -> String {
         let own = self.name.trim_matches(|c: char| !c.is_alphanumeric());
-        match self.name.starts_with('[') {
-            true => format!("{own}.{key}"),
-            false => key.to_string(),
+        if self.name.starts_with('[') {
+            format!("{own}.{key}")
+        } else {
+            key.to_string()
         }
     }
 }

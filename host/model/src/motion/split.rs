@@ -28,12 +28,13 @@ impl Split {
                 continue;
             };
             let (held, fitted) = (&held.name, &fitted.name);
-            let message = match held == fitted {
-                true => format!("{held} is fitted and held out"),
-                false => format!(
+            let message = if held == fitted {
+                format!("{held} is fitted and held out")
+            } else {
+                format!(
                     "{held} is held out, and shares rows with {fitted}, which is fitted; the two \
-                     motions hold the same samples"
-                ),
+                 motions hold the same samples"
+                )
             };
             return Err(Error::usage(message, NAME_ONCE));
         }

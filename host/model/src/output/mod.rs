@@ -30,9 +30,10 @@ pub fn write_new_bytes(path: &Path, bytes: &[u8], force: bool) -> Result<()> {
     let mut file = beside(path)?;
     file.write_all(bytes).map_err(refused)?;
     file.as_file().sync_all().map_err(refused)?;
-    let kept = match force {
-        true => file.persist(path),
-        false => file.persist_noclobber(path),
+    let kept = if force {
+        file.persist(path)
+    } else {
+        file.persist_noclobber(path)
     };
     match kept.map_err(|error| error.error) {
         Ok(_) => Ok(()),
@@ -59,9 +60,10 @@ pub fn vacant(path: &Path, force: bool) -> Result<()> {
 }
 
 fn not_taken(path: &Path, force: bool) -> Result<()> {
-    match !force && path.symlink_metadata().is_ok() {
-        true => Err(exists(path)),
-        false => Ok(()),
+    if !force && path.symlink_metadata().is_ok() {
+        Err(exists(path))
+    } else {
+        Ok(())
     }
 }
 

@@ -10,18 +10,20 @@ pub fn short(value: f64) -> String {
 
 /// Four significant digits, for values that go on into a file or another command.
 pub fn exact(value: f64) -> String {
-    match value == 0.0 || !value.is_finite() {
-        true => value.to_string(),
-        false => significant(value, 4),
+    if value == 0.0 || !value.is_finite() {
+        value.to_string()
+    } else {
+        significant(value, 4)
     }
 }
 
 /// With an exponent below 1e-4 and from 1e6.
 fn significant(value: f64, digits: i32) -> String {
     let power = power(value);
-    match (-4..6).contains(&power) {
-        true => plain(value, decimals(digits - 1 - power)),
-        false => format!("{value:.*e}", decimals(digits - 1)),
+    if (-4..6).contains(&power) {
+        plain(value, decimals(digits - 1 - power))
+    } else {
+        format!("{value:.*e}", decimals(digits - 1))
     }
 }
 
@@ -35,15 +37,14 @@ pub fn hex(bytes: impl AsRef<[u8]>) -> String {
 pub fn given(value: f64) -> String {
     let text = short(value);
     let (digits, power) = text.split_at(text.find('e').unwrap_or(text.len()));
-    match digits.contains('.') {
-        true => {
-            digits
-                .trim_end_matches('0')
-                .trim_end_matches('.')
-                .to_string()
-                + power
-        }
-        false => text,
+    if digits.contains('.') {
+        digits
+            .trim_end_matches('0')
+            .trim_end_matches('.')
+            .to_string()
+            + power
+    } else {
+        text
     }
 }
 

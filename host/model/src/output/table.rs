@@ -65,9 +65,10 @@ pub fn unbroken(mut table: Table) -> Table {
 fn word_lengths(cell: &str) -> Vec<usize> {
     let length = |text: &str| text.chars().count();
     let number = cell.starts_with(|sign: char| sign.is_ascii_digit() || "-><".contains(sign));
-    match number && length(cell) <= MOST_OF_NUMBER {
-        true => vec![length(cell)],
-        false => cell.split_whitespace().map(length).collect(),
+    if number && length(cell) <= MOST_OF_NUMBER {
+        vec![length(cell)]
+    } else {
+        cell.split_whitespace().map(length).collect()
     }
 }
 

@@ -83,13 +83,15 @@ pub fn mode_limits(model: &Model, board: &Board, timing: &BoardTiming) -> Result
 
 /// Half a step of each sensor: the joints' angles, then the first link's rate.
 fn half_steps(board: &Board, timing: &BoardTiming) -> [f64; JOINTS + 1] {
-    let first_rad = match timing.deviation[0].is_finite() {
-        true => Attitude::ANGLE_LSB_RAD / 2.0,
-        false => 0.0,
+    let first_rad = if timing.deviation[0].is_finite() {
+        Attitude::ANGLE_LSB_RAD / 2.0
+    } else {
+        0.0
     };
-    let rate = match board.gyro.from_host {
-        true => Attitude::RATE_LSB_RAD_S,
-        false => f64::from(board.gyro.scale.unsigned_abs()) / 16.0 * Attitude::RATE_LSB_RAD_S,
+    let rate = if board.gyro.from_host {
+        Attitude::RATE_LSB_RAD_S
+    } else {
+        f64::from(board.gyro.scale.unsigned_abs()) / 16.0 * Attitude::RATE_LSB_RAD_S
     };
     let joint_rad = Position::LSB_RAD / 2.0;
     [first_rad, joint_rad, joint_rad, rate / 2.0]

@@ -66,9 +66,10 @@ pub(super) fn plan(model: &Model, design: &Design, board: &Board) -> Result<Plan
     }
     let table = table(&fixed.law)?;
     // Where the operating point is upright, the CM-5 moves it to the equilibrium of the masses.
-    let moments = match table.x0 == [0; STATES] {
-        true => moments(model),
-        false => [Moment::ZERO; JOINTS],
+    let moments = if table.x0 == [0; STATES] {
+        moments(model)
+    } else {
+        [Moment::ZERO; JOINTS]
     };
     let steps = [fixed.law.input_step[0], fixed.law.input_step[1]];
     let velocity = VELOCITY;

@@ -84,15 +84,16 @@ pub fn verify<L: SerialLink>(
         ));
     }
     session.greet()?;
-    match session.hello.plan == fingerprint {
-        true => Ok(theirs),
-        false => Err(Error::device(
+    if session.hello.plan == fingerprint {
+        Ok(theirs)
+    } else {
+        Err(Error::device(
             format!(
                 "the CM-5 says its gains are {:08X}, not {fingerprint:08X}",
                 session.hello.plan
             ),
             "its firmware does not take this plan: flash the firmware that belongs to this \
-             program, docs/flash.md",
-        )),
+         program, docs/flash.md",
+        ))
     }
 }

@@ -57,18 +57,16 @@ impl Learned {
         let added: Vec<String> = (found.diagnosis.effects.iter())
             .map(FittedEffect::address)
             .collect();
-        let model_toml = match added.is_empty() {
-            true => text.to_string(),
-            false => {
-                let candidates = candidates_named(&added, &model)?;
-                let horizon = Some(HORIZON);
-                let addition =
-                    add_effects(text, file, &candidates, &found.split, horizon, &|_| {})?;
-                match addition {
-                    Addition::Added { text, .. } => text,
-                    Addition::Undetermined(_) => as_diagnosed(text, file, &found.diagnosis)?,
-                    Addition::Unhelpful(_) => text.to_string(),
-                }
+        let model_toml = if added.is_empty() {
+            text.to_string()
+        } else {
+            let candidates = candidates_named(&added, &model)?;
+            let horizon = Some(HORIZON);
+            let addition = add_effects(text, file, &candidates, &found.split, horizon, &|_| {})?;
+            match addition {
+                Addition::Added { text, .. } => text,
+                Addition::Undetermined(_) => as_diagnosed(text, file, &found.diagnosis)?,
+                Addition::Unhelpful(_) => text.to_string(),
             }
         };
         Ok(Learned {

@@ -62,9 +62,10 @@ fn said(attempt: &BalanceAttempt) -> String {
     let sway = attempt.sway_rms_rad.map_or(String::new(), |rad| {
         format!(", swaying by {:.1} mrad rms", 1e3 * rad)
     });
-    match attempt.stands {
-        true => format!("stands for {STANDS_S:.0} s{sway}"),
-        false => format!("falls after {:.1} s", attempt.stood_s),
+    if attempt.stands {
+        format!("stands for {STANDS_S:.0} s{sway}")
+    } else {
+        format!("falls after {:.1} s", attempt.stood_s)
     }
 }
 

@@ -71,9 +71,10 @@ pub fn record(robot: &HiddenRobot, dir: &Path) -> Result<LogSet> {
             rows: Some(rows(&read(&log)?)),
             path: log,
         };
-        match motion.is_held_out {
-            true => logs.held_out.push(request),
-            false => logs.training.push(request),
+        if motion.is_held_out {
+            logs.held_out.push(request)
+        } else {
+            logs.training.push(request)
         }
     }
     Ok(logs)

@@ -173,9 +173,10 @@ impl Comparison {
     /// What errors over all joints are of.
     pub fn quantity(&self) -> MeasuredSignal {
         let signals: Vec<MeasuredSignal> = self.signals.iter().map(|s| s.quantity).collect();
-        match signals.is_empty() {
-            true => MeasuredSignal::Angle,
-            false => MeasuredSignal::pooled(&signals),
+        if signals.is_empty() {
+            MeasuredSignal::Angle
+        } else {
+            MeasuredSignal::pooled(&signals)
         }
     }
 

@@ -170,9 +170,10 @@ pub fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
         .filter(|e| e.is_finite())
         .map(|e| e * e)
         .sum();
-    match spread > 0.0 {
-        true => 100.0 * (1.0 - (error / spread).sqrt()),
-        false => f64::NAN,
+    if spread > 0.0 {
+        100.0 * (1.0 - (error / spread).sqrt())
+    } else {
+        f64::NAN
     }
 }
 

@@ -96,10 +96,7 @@ fn of_joint(comparison: &Comparison, signal: &SignalError) -> String {
 
 /// Behind a joint, where its rate is meant and not its angle.
 fn of_rate(beside_angle: bool) -> &'static str {
-    match beside_angle {
-        true => ", rate",
-        false => "",
-    }
+    if beside_angle { ", rate" } else { "" }
 }
 
 /// A table whose columns but the first hold numbers.
@@ -176,9 +173,10 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], wanted: (usize, bo
         signals.find(|s| (s.joint, s.beside_angle) == wanted)
     }
     let named = |c: &Comparison| c.signals.len() > 1 || !c.unobserved.is_empty();
-    let prefix = match comparisons.iter().any(named) {
-        true => format!("joint {}{}: ", wanted.0, of_rate(wanted.1)),
-        false => String::new(),
+    let prefix = if comparisons.iter().any(named) {
+        format!("joint {}{}: ", wanted.0, of_rate(wanted.1))
+    } else {
+        String::new()
     };
     let quantity = comparisons
         .iter()
@@ -187,9 +185,12 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], wanted: (usize, bo
     let lines: [(&str, Cell); 6] = [
         ("rms, mrad", |s| mrad_in_column(s.rms)),
         ("largest, mrad", |s| mrad_in_column(s.largest)),
-        ("fit, %", |s| match s.fit_percent.is_nan() {
-            true => NONE.to_string(),
-            false => format!("{:.1}", s.fit_percent),
+        ("fit, %", |s| {
+            if s.fit_percent.is_nan() {
+                NONE.to_string()
+            } else {
+                format!("{:.1}", s.fit_percent)
+            }
         }),
         ("floor, mrad", |s| mrad_in_column(s.floor)),
         ("squared error above floor, %", |s| {

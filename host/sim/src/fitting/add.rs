@@ -137,9 +137,10 @@ pub fn add_effects_from(
     };
     let (error, fitted_rad) = (refitted.error, refitted.fitted_rad);
     if error.after_rad > MOST_LEFT * error.before_rad {
-        return Ok(Addition::Unhelpful(match error.held_out {
-            true => Unhelpful::NotReduced { error, fitted_rad },
-            false => Unhelpful::NotFound(error),
+        return Ok(Addition::Unhelpful(if error.held_out {
+            Unhelpful::NotReduced { error, fitted_rad }
+        } else {
+            Unhelpful::NotFound(error)
         }));
     }
     let mut text = with_values(text, path, &model, &refitted)?;

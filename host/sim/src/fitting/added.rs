@@ -69,9 +69,10 @@ impl AddedEffects<'_> {
             windows: without.windows,
         };
         let found = self.by_ways(&guessed, step);
-        match found.residuals.cost() < base.residuals.cost() {
-            true => found,
-            false => self.beside(base, found),
+        if found.residuals.cost() < base.residuals.cost() {
+            found
+        } else {
+            self.beside(base, found)
         }
     }
 
@@ -118,9 +119,10 @@ impl AddedEffects<'_> {
         let small = self.by_change(base, self.data);
         let absent = self.switched_off(base, &found.model);
         least(vec![small, absent]).map_or(found.clone(), |beside| {
-            match beside.residuals.cost() < found.residuals.cost() {
-                true => beside,
-                false => found,
+            if beside.residuals.cost() < found.residuals.cost() {
+                beside
+            } else {
+                found
             }
         })
     }

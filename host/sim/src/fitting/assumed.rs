@@ -117,9 +117,10 @@ fn anchored(
             (least, at) = (own, to);
         }
     }
-    match least < DRIFT_CLEAR * plain_cost {
-        true => moved(at),
-        false => moved(plain),
+    if least < DRIFT_CLEAR * plain_cost {
+        moved(at)
+    } else {
+        moved(plain)
     }
 }
 

@@ -49,9 +49,10 @@ impl Candidate {
             id: effect.info().id,
         })?;
         let candidate = Candidate { effect, joint };
-        match candidate.in_model(model) {
-            true => Err(CandidateError::InModel(candidate)),
-            false => Ok(candidate),
+        if candidate.in_model(model) {
+            Err(CandidateError::InModel(candidate))
+        } else {
+            Ok(candidate)
         }
     }
 
@@ -268,9 +269,10 @@ fn joint(
         (_, None) if count == 1 => 0,
         (_, None) => return Err(CandidateError::JointNotNamed { id, count }),
         (scope, Some("all")) => {
-            return match scope != Scope::PassiveJoint && !model.driven_joints().is_empty() {
-                true => Ok(None),
-                false => Err(CandidateError::NoDrivenJoint { id }),
+            return if scope != Scope::PassiveJoint && !model.driven_joints().is_empty() {
+                Ok(None)
+            } else {
+                Err(CandidateError::NoDrivenJoint { id })
             };
         }
         (_, Some(at)) => match at.parse::<usize>() {

@@ -55,8 +55,9 @@ pub fn free_parameters(model: &Model, named: &[String]) -> Result<Vec<ParameterP
     if named.is_empty() {
         free.clone_from(&model.free);
     }
-    match free.is_empty() {
-        true => Err(FreeError::Nothing),
-        false => Ok(free),
+    if free.is_empty() {
+        Err(FreeError::Nothing)
+    } else {
+        Ok(free)
     }
 }

@@ -74,9 +74,10 @@ pub fn changes(
 fn starts(candidate: Candidate) -> Vec<Vec<f64>> {
     let starts = candidate.starts();
     let firsts = first_of_each(starts.clone(), |start| shape(candidate, start));
-    match firsts.len() > FEW_SHAPES {
-        true => firsts,
-        false => starts,
+    if firsts.len() > FEW_SHAPES {
+        firsts
+    } else {
+        starts
     }
 }
 

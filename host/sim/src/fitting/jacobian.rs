@@ -82,9 +82,12 @@ impl LevenbergMarquardt<'_> {
             .collect();
         let columns: Vec<Column> = tasks
             .par_iter()
-            .map(|&(unknown, motion)| match unknown < self.fit.free.len() {
-                true => self.parameter_column(unknown, motion),
-                false => self.node_column(unknown - self.fit.free.len(), motion),
+            .map(|&(unknown, motion)| {
+                if unknown < self.fit.free.len() {
+                    self.parameter_column(unknown, motion)
+                } else {
+                    self.node_column(unknown - self.fit.free.len(), motion)
+                }
             })
             .collect();
         self.fit.simulations += unknowns.len();

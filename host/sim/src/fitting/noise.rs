@@ -29,15 +29,16 @@ pub fn noise(motions: &[Motion], series: &[&[f64]], declared_resolution: Option<
     let seen = difference_noise(&differences);
     let counts = seen.is_finite() && (rounding == 0.0 || alternation(&differences) < -0.6);
     let known = rounding.max(LEAST);
-    match counts && seen > known {
-        true => Noise {
+    if counts && seen > known {
+        Noise {
             deviation: seen,
             error: seen * relative_error(differences.iter().map(Vec::len).sum()),
-        },
-        false => Noise {
+        }
+    } else {
+        Noise {
             deviation: known,
             error: 0.0,
-        },
+        }
     }
 }
 
@@ -70,9 +71,10 @@ pub fn estimated_resolution(series: &[&[f64]]) -> Option<f64> {
 /// Sixth differences, motion by motion.
 fn differences(times: &[&[f64]], series: &[&[f64]]) -> Vec<Vec<f64>> {
     let of_motion = |(time_s, values): (&&[f64], &&[f64])| {
-        let differences = match is_even(time_s) {
-            true => even(values),
-            false => divided(time_s, values),
+        let differences = if is_even(time_s) {
+            even(values)
+        } else {
+            divided(time_s, values)
         };
         differences.into_iter().filter(|x| x.is_finite()).collect()
     };

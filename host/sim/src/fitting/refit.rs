@@ -146,12 +146,13 @@ pub fn refit(
 /// Refuses values of which the data tell only a mixture.
 pub(super) fn told_apart(found: &Fit) -> Result<(), Undetermined> {
     let mixed = untold_mixture(found);
-    match mixed.is_empty() {
-        true => Ok(()),
-        false => Err(Undetermined {
+    if mixed.is_empty() {
+        Ok(())
+    } else {
+        Err(Undetermined {
             blind: Vec::new(),
             mixed: mixed.iter().map(ToString::to_string).collect(),
-        }),
+        })
     }
 }
 
@@ -232,9 +233,10 @@ pub fn refit_from(
         split,
         horizon,
     };
-    match is_better {
-        true => refit.finish(found).map_err(NotAdded::Undetermined),
-        false => Err(NotAdded::NotBetter(refit.error_on_fitted(&found))),
+    if is_better {
+        refit.finish(found).map_err(NotAdded::Undetermined)
+    } else {
+        Err(NotAdded::NotBetter(refit.error_on_fitted(&found)))
     }
 }
 

@@ -20,9 +20,10 @@ impl Fit {
         if self.converged && (self.fresh || options.rough) {
             return self.clone();
         }
-        let iterations = match self.converged {
-            true => 0,
-            false => options.iterations,
+        let iterations = if self.converged {
+            0
+        } else {
+            options.iterations
         };
         let options = FitOptions {
             iterations,

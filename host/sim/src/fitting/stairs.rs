@@ -170,9 +170,10 @@ fn farthest(step: f64, holds: impl Fn(f64) -> bool) -> f64 {
     }
     for _ in 0..HALVED {
         let middle = 0.5 * (within + beyond);
-        match holds(middle) {
-            true => within = middle,
-            false => beyond = middle,
+        if holds(middle) {
+            within = middle
+        } else {
+            beyond = middle
         }
     }
     within

@@ -254,9 +254,12 @@ impl<R: Rows> Forces<R> {
             self.find_gear_loads(plant, at);
         }
         let (loads, memory) = (&self.loads, &self.memory);
-        let holding_nm = |joint: usize| match inputs[joint].energised {
-            true => loads[joint],
-            false => 0.0,
+        let holding_nm = |joint: usize| {
+            if inputs[joint].energised {
+                loads[joint]
+            } else {
+                0.0
+            }
         };
         (self.auxiliary).recall(plant, memory, (angle, speed), holding_nm);
     }

@@ -155,9 +155,10 @@ impl JointPlan {
     /// it is filtered, whatever order a model names them in.
     fn add_sensor(&mut self, active: ActiveEffect) {
         let filters = |e: &ActiveEffect| e.effect.trail_rad(e.values(), 1.0).is_some();
-        let before = match filters(&active) {
-            true => None,
-            false => self.sense.iter().position(filters),
+        let before = if filters(&active) {
+            None
+        } else {
+            self.sense.iter().position(filters)
         };
         self.sense
             .insert(before.unwrap_or(self.sense.len()), active);

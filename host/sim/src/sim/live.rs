@@ -124,23 +124,23 @@ impl Live {
     /// Angle of a joint in the model's convention as its encoder reads it, rad: behind backlash and
     /// lag.
     pub fn reading_rad(&self, joint: usize) -> f64 {
-        match self.plant.senses {
-            true => self.sensors.reading[joint],
-            false => self.angle_rad(joint),
+        if self.plant.senses {
+            self.sensors.reading[joint]
+        } else {
+            self.angle_rad(joint)
         }
     }
 
     /// Angle and speed of the shaft in a joint as its encoder reads them: from the link before it,
     /// whatever the model's convention, rad and rad/s.
     pub fn shaft(&self, joint: usize) -> (f64, f64) {
-        match self.plant.is_absolute() && joint > 0 {
-            true => {
-                // Readings of absolute angles differ by the link's before.
-                let trail = |at: usize| self.reading_rad(at) - self.angle_rad(at);
-                let angle_rad = self.stepper.angle[joint] + trail(joint) - trail(joint - 1);
-                (angle_rad, self.stepper.speed[joint])
-            }
-            false => (self.reading_rad(joint), self.speed_rad_s(joint)),
+        if self.plant.is_absolute() && joint > 0 {
+            // Readings of absolute angles differ by the link's before.
+            let trail = |at: usize| self.reading_rad(at) - self.angle_rad(at);
+            let angle_rad = self.stepper.angle[joint] + trail(joint) - trail(joint - 1);
+            (angle_rad, self.stepper.speed[joint])
+        } else {
+            (self.reading_rad(joint), self.speed_rad_s(joint))
         }
     }
 }

@@ -66,12 +66,13 @@ impl Event {
         let slope = after - before - bend;
         let root = (slope * slope - 4.0 * bend * before).sqrt();
         let better = -2.0 * before / (slope + root.copysign(slope));
-        match (0.0..=1.0).contains(&better) {
-            true => Event {
+        if (0.0..=1.0).contains(&better) {
+            Event {
                 share: better,
                 ..self
-            },
-            false => self,
+            }
+        } else {
+            self
         }
     }
 }

@@ -169,12 +169,15 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
 
 /// The limits that torque comes on with.
 fn checked(args: &BalanceArgs) -> Result<ArmLimits> {
-    let within = |name: &str, value: f64, low: f64, high: f64| match (low..=high).contains(&value) {
-        true => Ok(value),
-        false => Err(Error::usage(
-            format!("{name} {value} does not fit"),
-            format!("give {low} to {high}"),
-        )),
+    let within = |name: &str, value: f64, low: f64, high: f64| {
+        if (low..=high).contains(&value) {
+            Ok(value)
+        } else {
+            Err(Error::usage(
+                format!("{name} {value} does not fit"),
+                format!("give {low} to {high}"),
+            ))
+        }
     };
     within("--countdown", args.countdown, 0.0, 60.0)?;
     within("--seconds", args.seconds.unwrap_or(1.0), 0.01, 1e6)?;

@@ -96,9 +96,10 @@ impl BalanceReport {
             outcome.words()
         );
         talk.result(&data, || text)?;
-        match outcome.is_safety_stop() {
-            true => Ok(ExitStatus::Stopped),
-            false => Ok(ExitStatus::Done),
+        if outcome.is_safety_stop() {
+            Ok(ExitStatus::Stopped)
+        } else {
+            Ok(ExitStatus::Done)
         }
     }
 }

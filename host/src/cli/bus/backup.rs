@@ -106,9 +106,10 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     drop(bar);
     let data = json!({ "written": !args.dry_run, "changes": changes });
-    let done = match args.dry_run {
-        true => "would be written",
-        false => "were written and read back",
+    let done = if args.dry_run {
+        "would be written"
+    } else {
+        "were written and read back"
     };
     let said = format!("{} registers {done}", changes.len());
     changes::report(&data, &changes, "Saved", &said, talk)

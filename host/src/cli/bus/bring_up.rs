@@ -93,9 +93,10 @@ impl Person for Attendant<'_> {
             StepOutcome::Failed => "FAILED",
             StepOutcome::NotDone => "not done",
         };
-        let found = match result.found.is_empty() {
-            true => String::new(),
-            false => format!(": {}", result.found),
+        let found = if result.found.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", result.found)
         };
         self.talk
             .say(&format!("{outcome:8} {}{found}", result.title));

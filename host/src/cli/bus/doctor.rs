@@ -65,9 +65,10 @@ fn with_a_sign_of_life(args: &BusDoctorArgs, link: &mut AnyLink, talk: &Talk) ->
     say_found(&found, talk);
     let mut ids = [found.ids(), found.garbled].concat();
     ids.sort_unstable();
-    Ok(match ids.is_empty() {
-        true => DEFAULT_IDS.to_vec(),
-        false => ids,
+    Ok(if ids.is_empty() {
+        DEFAULT_IDS.to_vec()
+    } else {
+        ids
     })
 }
 

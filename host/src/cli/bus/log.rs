@@ -60,8 +60,9 @@ fn text(faults: &[LoggedFault]) -> String {
         ("Torque went off, for", &|fault| fault.cause.to_string()),
         ("It was", &|fault| fault.condition.to_string()),
     ];
-    match faults.is_empty() {
-        true => "No fault is kept.".to_string(),
-        false => table_of(faults, columns).to_string(),
+    if faults.is_empty() {
+        "No fault is kept.".to_string()
+    } else {
+        table_of(faults, columns).to_string()
     }
 }

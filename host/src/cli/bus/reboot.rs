@@ -42,12 +42,13 @@ pub fn run(args: &RebootArgs, talk: &Talk) -> Result<ExitStatus> {
             errors => errors?,
         };
         is_well &= errors.is_empty();
-        talk.say(&match errors.is_empty() {
-            true => format!("servo {id} is back"),
-            false => format!(
+        talk.say(&if errors.is_empty() {
+            format!("servo {id} is back")
+        } else {
+            format!(
                 "servo {id} is back, and still reports: {}",
                 errors.join(", ")
-            ),
+            )
         });
         rebooted.push(json!({ "id": id, "error_flags": errors }));
     }

@@ -48,9 +48,10 @@ pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
     talk.result(&found, || table(&found))?;
     let asked = args.ids.0.len();
     talk.say(&format!("{} of {asked} ids answer", found.len()));
-    match found.is_empty() {
-        true => Err(no_response()),
-        false => Ok(ExitStatus::Done),
+    if found.is_empty() {
+        Err(no_response())
+    } else {
+        Ok(ExitStatus::Done)
     }
 }
 
@@ -107,9 +108,10 @@ pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Resul
             "`handstand bus doctor` finds the cause; --ids leaves it out",
         ));
     }
-    match found.is_empty() {
-        true => Err(no_response()),
-        false => Ok(found.iter().map(|servo| servo.id).collect()),
+    if found.is_empty() {
+        Err(no_response())
+    } else {
+        Ok(found.iter().map(|servo| servo.id).collect())
     }
 }
 

@@ -184,11 +184,12 @@ fn servo(ids: &[u8]) -> Result<ServoPair> {
 }
 
 fn within(name: &str, value: f64, least: f64, most: f64) -> Result<f64> {
-    match (least..=most).contains(&value) {
-        true => Ok(value),
-        false => Err(Error::usage(
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(Error::usage(
             format!("{name} comes to {value}, which does not fit"),
             format!("it has to lie between {least} and {most}"),
-        )),
+        ))
     }
 }

@@ -237,9 +237,10 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         write_new(file, &plan_file(&plan, &talk.command), args.gains.force())?;
         steps.say(format!("wrote {}", file.display()));
     }
-    let back = match args.flash {
-        true => flash(args, &plan, &bytes, &mut steps)?,
-        false => upload(args, &bytes, fingerprint, &mut steps)?,
+    let back = if args.flash {
+        flash(args, &plan, &bytes, &mut steps)?
+    } else {
+        upload(args, &bytes, fingerprint, &mut steps)?
     };
     replay(args, &back, &mut steps)?;
     let way = match (args.dry_run, args.flash) {

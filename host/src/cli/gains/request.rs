@@ -116,12 +116,13 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
         let (said, units) = (said.join(", "), units.join(", "));
         moved = Some(format!("balanced at q = [{said}] {units}"));
     }
-    let time = match args.continuous {
-        true => Time::Continuous,
-        false => Time::Sampled {
+    let time = if args.continuous {
+        Time::Continuous
+    } else {
+        Time::Sampled {
             ts_s: args.ts,
             delay_s: args.delay,
-        },
+        }
     };
     let joints = model.link_count();
     let driven = model.joints.iter().filter(|joint| joint.drive.is_driven());

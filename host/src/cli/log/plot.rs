@@ -43,9 +43,12 @@ pub fn run(args: &LogPlotArgs, talk: &Talk) -> Result<ExitStatus> {
     let columns: Vec<Value> = log.names.iter().zip(&log.columns).map(column).collect();
     let data = json!({ "time": log.time().map(|time| &log.names[time]), "columns": columns });
     // Who asks for a page does not want it in dots too.
-    talk.result(&data, || match args.page.is_wanted() {
-        true => format!("{}: {} columns", args.log, log.names.len()),
-        false => raw_text(&log, &args.columns),
+    talk.result(&data, || {
+        if args.page.is_wanted() {
+            format!("{}: {} columns", args.log, log.names.len())
+        } else {
+            raw_text(&log, &args.columns)
+        }
     })?;
     let title = args.log.name();
     args.page

@@ -79,9 +79,10 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
     if args.names.is_empty() {
         return list(talk);
     }
-    let chosen: Vec<Swept> = match args.names.iter().any(|name| name == "all") {
-        true => sweeps().collect(),
-        false => args.names.iter().filter_map(|name| named(name)).collect(),
+    let chosen: Vec<Swept> = if args.names.iter().any(|name| name == "all") {
+        sweeps().collect()
+    } else {
+        args.names.iter().filter_map(|name| named(name)).collect()
     };
     if !args.levels.is_empty() && chosen.len() > 1 {
         return Err(Error::usage(
@@ -110,9 +111,12 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
             }
         }
     }
-    let levels = |levels: &Levels| match args.levels.is_empty() {
-        true => levels.values.to_vec(),
-        false => args.levels.clone(),
+    let levels = |levels: &Levels| {
+        if args.levels.is_empty() {
+            levels.values.to_vec()
+        } else {
+            args.levels.clone()
+        }
     };
     let bar = talk.bar(chosen.iter().map(|(_, own)| levels(own).len() as u64).sum());
     let mut all = Vec::new();

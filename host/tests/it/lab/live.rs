@@ -166,12 +166,11 @@ fn a_page_that_goes_away_lets_the_robot_down() {
         let before = other.all("phase").len();
         assert_eq!(page.begin(&balance(Value::Null)), 200);
         page.agrees_to_all();
-        match closes {
-            true => page.goes(),
-            false => {
-                page.hangs();
-                page.phase("ended");
-            }
+        if closes {
+            page.goes()
+        } else {
+            page.hangs();
+            page.phase("ended");
         }
         let begun = Instant::now();
         while !other.all("phase")[before..]

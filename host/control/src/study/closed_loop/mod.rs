@@ -58,9 +58,10 @@ fn closed_loop(model: &Model, plan: &StateFeedbackPlan, motion: &Motion) -> Resu
     let mut closed = ClosedLoop::around(plant, period_s(model, plan)?);
     closed.sensor = Sensor {
         position_resolution_rad: model.position_step_rad(),
-        velocity: match logs_speeds {
-            true => Velocity::Direct,
-            false => Velocity::Difference,
+        velocity: if logs_speeds {
+            Velocity::Direct
+        } else {
+            Velocity::Difference
         },
         ..Sensor::EXACT
     };

@@ -50,9 +50,10 @@ pub(super) fn conditions(table: &Table<'_>, case: &mut Case) -> Result<Vec<Uncer
         &mut clock.jitter,
     )?;
     set(table, "loss", Limits::within(0.0, 1.0), &mut clock.loss)?;
-    let known_periods = match designed_periods > 0.0 {
-        true => designed_periods,
-        false => case.control.drives.delay_periods,
+    let known_periods = if designed_periods > 0.0 {
+        designed_periods
+    } else {
+        case.control.drives.delay_periods
     };
     case.control.sensor = case.sensor;
     case.control.drives = Drives {

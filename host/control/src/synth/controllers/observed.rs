@@ -143,13 +143,15 @@ impl ControllerDesign for ObservedDesign {
 fn law(known: &DesignModel, options: &Options) -> Result<Surface> {
     let without = plant(known, false)?;
     let gains = regulator(known, options, &without)?;
-    let surface = match options.sliding {
-        false => Surface::regulator(gains.k),
-        true => Surface::sliding(&without, &gains.riccati)?,
+    let surface = if !options.sliding {
+        Surface::regulator(gains.k)
+    } else {
+        Surface::sliding(&without, &gains.riccati)?
     };
-    Ok(match options.offsets {
-        true => surface.with_offsets(known.joints()),
-        false => surface,
+    Ok(if options.offsets {
+        surface.with_offsets(known.joints())
+    } else {
+        surface
     })
 }
 

@@ -64,9 +64,10 @@ impl OnBoard {
     /// periods; plants that cannot be held or are not seen.
     pub fn new(known: &DesignModel, timing: &BoardTiming) -> Result<OnBoard> {
         let known = &on_time(known, timing)?;
-        let options = match timing.is_gyro() {
-            true => &BY_GYRO,
-            false => &BEST.options,
+        let options = if timing.is_gyro() {
+            &BY_GYRO
+        } else {
+            &BEST.options
         };
         let wide = lagging(known, timing);
         let predict = outputs(known, timing, &wide)?;
@@ -157,9 +158,10 @@ fn lagging(known: &DesignModel, timing: &BoardTiming) -> Continuous {
     }
     for drive in TORQUES..ESTIMATED {
         // Torques that follow at once are of no effect, and fade.
-        a[(drive, drive)] = match timing.lag_s > 0.0 {
-            true => -1.0 / timing.lag_s,
-            false => -1.0 / known.period_s,
+        a[(drive, drive)] = if timing.lag_s > 0.0 {
+            -1.0 / timing.lag_s
+        } else {
+            -1.0 / known.period_s
         };
         if timing.lag_s > 0.0 {
             b[(drive, drive - TORQUES)] = 1.0 / timing.lag_s;

@@ -45,17 +45,19 @@ pub(super) fn digits(value: f64) -> String {
         return value.to_string();
     }
     let power = value.abs().log10().floor() as i32;
-    match (-4..7).contains(&power) {
-        true => format!("{value:.*}", (7 - power).clamp(0, 11) as usize),
-        false => format!("{value:.7e}"),
+    if (-4..7).contains(&power) {
+        format!("{value:.*}", (7 - power).clamp(0, 11) as usize)
+    } else {
+        format!("{value:.7e}")
     }
 }
 
 /// A given number, to six digits at most.
 pub(super) fn plain(value: f64) -> String {
     let text = format!("{value:.6}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text,
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text
     }
 }

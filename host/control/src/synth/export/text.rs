@@ -18,9 +18,10 @@ fn pose_unit(design: &Design) -> String {
         .iter()
         .map(|state| state.unit)
         .collect();
-    match units.iter().all(|unit| *unit == "rad") {
-        true => " rad".to_string(),
-        false => format!(" {}", units.join(", ")),
+    if units.iter().all(|unit| *unit == "rad") {
+        " rad".to_string()
+    } else {
+        format!(" {}", units.join(", "))
     }
 }
 
@@ -175,9 +176,10 @@ fn controllability(of: &Controllability, design: &Design) -> String {
     // Mirrored modes are equally hard: rounded, the growing one is named, which comes first.
     let size = |mode: &Mode| (1e6 * mode.margin.max(f64::MIN_POSITIVE).ln()).round();
     let weakest = of.modes.iter().min_by(|a, b| size(a).total_cmp(&size(b)));
-    let all = match of.is_full() {
-        true => "every mode".to_string(),
-        false => format!("NOT every mode: rank {} of {n}", of.rank),
+    let all = if of.is_full() {
+        "every mode".to_string()
+    } else {
+        format!("NOT every mode: rank {} of {n}", of.rank)
     };
     match weakest {
         None => all,
@@ -297,9 +299,10 @@ fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
     let mut lines = vec![
         table.to_string(),
         String::new(),
-        match ranges.len() <= WIDEST {
-            true => format!("Ranges: {}", ranges.join("; ")),
-            false => format!("Ranges: of {} states, see --json", ranges.len()),
+        if ranges.len() <= WIDEST {
+            format!("Ranges: {}", ranges.join("; "))
+        } else {
+            format!("Ranges: of {} states, see --json", ranges.len())
         },
         "No states whatever overflow the sum; errors are the most that is possible within the \
          ranges."

@@ -117,9 +117,12 @@ fn accelerations(model: &Model, pose: &[f64], speed: &[f64], input: &[f64]) -> V
         - equations.coriolis(&hanging, &w) * DVector::from_column_slice(&w)
         - equations.gravity(&hanging);
     let relative = equations.mass(&hanging).lu().solve(&left).unwrap();
-    let sum = |i: usize| match absolute {
-        true => relative.rows(0, i + 1).sum(),
-        false => relative[i],
+    let sum = |i: usize| {
+        if absolute {
+            relative.rows(0, i + 1).sum()
+        } else {
+            relative[i]
+        }
     };
     (0..3).map(sum).collect()
 }

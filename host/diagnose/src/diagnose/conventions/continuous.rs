@@ -101,9 +101,10 @@ fn best(
         let (a, b) = (high - golden * (high - low), low + golden * (high - low));
         let (first, second) = rayon::join(|| tried(a), || tried(b));
         let (first, second) = (first?, second?);
-        match first.ratio() < second.ratio() {
-            true => high = b,
-            false => low = a,
+        if first.ratio() < second.ratio() {
+            high = b
+        } else {
+            low = a
         }
         for trial in [first, second] {
             if trial.ratio() < found.ratio() {

@@ -209,9 +209,10 @@ fn milli(model: &Model) -> &'static str {
 }
 
 fn percent(share: f64) -> String {
-    match share >= 0.095 {
-        true => format!("{:.0} %", 100.0 * share),
-        false => format!("{:.1} %", 100.0 * share),
+    if share >= 0.095 {
+        format!("{:.0} %", 100.0 * share)
+    } else {
+        format!("{:.1} %", 100.0 * share)
     }
 }
 

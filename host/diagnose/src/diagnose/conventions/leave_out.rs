@@ -116,9 +116,10 @@ pub(super) fn without_stalled(model: &Model, motions: &[Motion]) -> Vec<Motion> 
             from = from.max(run.end);
         }
     }
-    match rest.is_empty() {
-        true => motions.to_vec(),
-        false => rest,
+    if rest.is_empty() {
+        motions.to_vec()
+    } else {
+        rest
     }
 }
 

@@ -71,9 +71,10 @@ impl ModelReading {
         let motions = 0..self.data.motions.len();
         let shorter = |motion: usize| {
             let pieces = |data: &FitData| data.windows_of(motion).count();
-            let data = match pieces(&self.data) >= pieces(&other.data) {
-                true => &self.data,
-                false => &other.data,
+            let data = if pieces(&self.data) >= pieces(&other.data) {
+                &self.data
+            } else {
+                &other.data
             };
             data.windows_of(motion)
                 .map(|(_, window)| window.clone())

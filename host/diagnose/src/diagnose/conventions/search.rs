@@ -40,9 +40,10 @@ pub fn search(model: &Model, motions: &[Motion]) -> Vec<Found> {
     let (mut model, mut motions) = (model.clone(), motions.to_vec());
     for _ in 0..ROUNDS {
         // A run that failed proves nothing: what the log holds besides is judged.
-        let judged = match is_doubtful_time(&model, &motions) {
-            true => motions.clone(),
-            false => without_stalled(&model, &motions),
+        let judged = if is_doubtful_time(&model, &motions) {
+            motions.clone()
+        } else {
+            without_stalled(&model, &motions)
         };
         let Some(fault) = fault(&model, &judged) else {
             break;
@@ -69,9 +70,12 @@ fn fault(model: &Model, motions: &[Motion]) -> Option<Found> {
         trials.filter(|trial| trial.ratio() < 1.0).collect()
     };
     // Where a free number gains but little more, one of a few alternatives is likelier.
-    let merit = |trial: &Trial| match trial.remedy.is_continuous() {
-        true => trial.after / FREE_NUMBER,
-        false => trial.after,
+    let merit = |trial: &Trial| {
+        if trial.remedy.is_continuous() {
+            trial.after / FREE_NUMBER
+        } else {
+            trial.after
+        }
     };
     clear.sort_by(|a, b| merit(a).total_cmp(&merit(b)));
     let mut clear = clear.into_iter();
@@ -210,9 +214,10 @@ const MOST_WHERE_LARGER: f64 = 0.15;
 impl Least {
     fn allows(&self, trial: &Trial) -> bool {
         // In another unit every error in rad may be larger, but then little of the motion is left.
-        let most = match trial.after_rad > trial.before_rad {
-            true => MOST_WHERE_LARGER,
-            false => 1.0,
+        let most = if trial.after_rad > trial.before_rad {
+            MOST_WHERE_LARGER
+        } else {
+            1.0
         };
         trial.ratio() < self.ratio && trial.better >= self.better && trial.after < most
     }
@@ -234,17 +239,21 @@ fn least(bench: &RemedyTrial, remedy: &Remedy) -> Least {
             let given = quantity
                 .column(&bench.model)
                 .map_or(0.0, |column| column.offset);
-            match (offset - given).abs() > LEAST_ZERO_RAD {
-                true => strict,
-                false => never,
+            if (offset - given).abs() > LEAST_ZERO_RAD {
+                strict
+            } else {
+                never
             }
         }
         // A drive that acts late, whatever delays it, is an effect of the library.
         Remedy::Shift(LogColumn::Input(_), shift_s) if *shift_s > 0.0 => never,
-        Remedy::Shift(_, shift_s) => match shift_s.abs() > 0.008 {
-            true => strict,
-            false => never,
-        },
+        Remedy::Shift(_, shift_s) => {
+            if shift_s.abs() > 0.008 {
+                strict
+            } else {
+                never
+            }
+        }
         Remedy::Unit(columns) if stands_still(bench, remedy, columns) => never,
         // Many turns of an arm are reason enough to doubt a unit.
         Remedy::Unit(columns) if doubts_travel(bench, columns) => Least {

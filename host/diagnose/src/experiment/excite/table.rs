@@ -207,9 +207,10 @@ fn triangles(plan: &ExcitePlan, end: usize, path: &mut PosePath) {
 /// A triangle of period 1 and amplitude 1 that begins at 0.
 fn triangle(phase: f64) -> f64 {
     let phase = (phase + 0.25).rem_euclid(1.0);
-    match phase < 0.5 {
-        true => 4.0 * phase - 1.0,
-        false => 3.0 - 4.0 * phase,
+    if phase < 0.5 {
+        4.0 * phase - 1.0
+    } else {
+        3.0 - 4.0 * phase
     }
 }
 

@@ -116,13 +116,10 @@ fn put(owner: &mut dyn TableLike, place: &QuantityPlace, chosen: &ChosenColumn) 
 
 /// Writes a value that says something; one that says nothing is left out.
 fn set_or_remove(table: &mut dyn TableLike, key: &str, says: bool, value: Value) {
-    match says {
-        true => {
-            table.insert(key, Item::Value(value));
-        }
-        false => {
-            table.remove(key);
-        }
+    if says {
+        table.insert(key, Item::Value(value));
+    } else {
+        table.remove(key);
     }
 }
 

@@ -64,9 +64,10 @@ pub(super) fn longest(
 fn sliding(tree: &RobotTree, file: &str, left_out: &mut Vec<Remark>) -> Result<Vec<usize>> {
     let mut slides = (0..tree.bodies.len()).filter(|&body| moves(tree, body, JointMotion::Slide));
     let Some(first) = slides.next() else {
-        let what = match tree.bodies.iter().any(|body| !body.joints.is_empty()) {
-            true => "no joint turns or slides alone in its own body",
-            false => "no joint turns about one axis or slides along one",
+        let what = if tree.bodies.iter().any(|body| !body.joints.is_empty()) {
+            "no joint turns or slides alone in its own body"
+        } else {
+            "no joint turns about one axis or slides along one"
         };
         return Err(Error::usage(
             format!("{file}: {what}"),

@@ -27,9 +27,12 @@ fn across(along: &[Vector3<f64>], gravity_m_s2: &Vector3<f64>) -> Vector3<f64> {
         longest.filter(|normal| normal.norm() > PARALLEL_RAD)
     };
     let normal = longest(&along[1..]).or_else(|| longest(&[*gravity_m_s2]));
-    let other = || match first.x.abs() < 0.9 {
-        true => Vector3::x(),
-        false => Vector3::y(),
+    let other = || {
+        if first.x.abs() < 0.9 {
+            Vector3::x()
+        } else {
+            Vector3::y()
+        }
     };
     normal.unwrap_or_else(|| first.cross(&other())).normalize()
 }
@@ -45,9 +48,10 @@ pub(super) struct Frame {
 /// An angle for people, in degrees and rad.
 fn in_words(angle_rad: f64) -> String {
     let degrees = angle_rad.to_degrees();
-    match degrees < 1.0 {
-        true => format!("{degrees:.2e} degrees ({angle_rad:.2e} rad)"),
-        false => format!("{degrees:.1} degrees"),
+    if degrees < 1.0 {
+        format!("{degrees:.2e} degrees ({angle_rad:.2e} rad)")
+    } else {
+        format!("{degrees:.1} degrees")
     }
 }
 
@@ -72,32 +76,33 @@ impl Frame {
         let axis = axis_of(first);
         let (mut most_rad, mut farthest) = (TOLD_RAD, None);
         for &body in chosen {
-            let off_rad = match slides(body) {
-                true => axis_of(body).dot(&axis).abs().min(1.0).asin(),
-                false => axis_of(body).cross(&axis).norm().min(1.0).asin(),
+            let off_rad = if slides(body) {
+                axis_of(body).dot(&axis).abs().min(1.0).asin()
+            } else {
+                axis_of(body).cross(&axis).norm().min(1.0).asin()
             };
             let (own, other) = (&joint(body).name, &joint(first).name);
             if off_rad > PARALLEL_RAD {
                 let off = in_words(off_rad);
-                return Err(NotPlanar(match slides(body) {
-                    true => {
-                        format!("joint {own} slides {off} out of the plane in which {other} turns")
-                    }
-                    false => format!("joints {other} and {own} turn about axes {off} apart"),
+                return Err(NotPlanar(if slides(body) {
+                    format!("joint {own} slides {off} out of the plane in which {other} turns")
+                } else {
+                    format!("joints {other} and {own} turn about axes {off} apart")
                 }));
             }
             if off_rad > most_rad {
                 let off = in_words(off_rad);
                 most_rad = off_rad;
-                farthest = Some(match slides(body) {
-                    true => format!(
+                farthest = Some(if slides(body) {
+                    format!(
                         "joint {own} slides {off} out of the plane in which {other} turns; it is \
-                         taken as within"
-                    ),
-                    false => format!(
+                     taken as within"
+                    )
+                } else {
+                    format!(
                         "joints {other} and {own} turn about axes {off} apart, which are taken as \
-                         parallel"
-                    ),
+                     parallel"
+                    )
                 });
             }
         }
@@ -131,17 +136,15 @@ impl Frame {
     fn about(axis: Vector3<f64>, gravity_m_s2: &Vector3<f64>) -> Self {
         let within = gravity_m_s2 - axis * axis.dot(gravity_m_s2);
         let gravity_m_s2 = within.norm();
-        let up = match gravity_m_s2 > NO_GRAVITY_M_S2 {
-            true => -within / gravity_m_s2,
-            // Any direction across the axis.
-            false => {
-                let other = if axis.x.abs() < 0.9 {
-                    Vector3::x()
-                } else {
-                    Vector3::y()
-                };
-                axis.cross(&other).normalize()
-            }
+        let up = if gravity_m_s2 > NO_GRAVITY_M_S2 {
+            -within / gravity_m_s2
+        } else {
+            let other = if axis.x.abs() < 0.9 {
+                Vector3::x()
+            } else {
+                Vector3::y()
+            };
+            axis.cross(&other).normalize()
         };
         Frame {
             axis,

@@ -39,9 +39,10 @@ pub(super) fn ready_to_paste(tree: &RobotTree, file: &str) -> Option<String> {
 /// A name as a shell takes it.
 fn word(name: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_-./:+@".contains(c);
-    match !name.is_empty() && name.chars().all(is_plain) {
-        true => name.to_string(),
-        false => format!("'{}'", name.replace('\'', "'\\''")),
+    if !name.is_empty() && name.chars().all(is_plain) {
+        name.to_string()
+    } else {
+        format!("'{}'", name.replace('\'', "'\\''"))
     }
 }
 

@@ -227,9 +227,10 @@ pub(super) fn chain_of(
 /// A centre of mass at this distance, m, and angle, rad, along a link's line and off it: below 0 m
 /// where it lies behind the joint.
 fn off_line(com: (f64, f64), direction_rad: f64) -> (f64, f64) {
-    let off_rad = match com.0 > NO_LENGTH_M {
-        true => wrapped(com.1 - direction_rad),
-        false => 0.0,
+    let off_rad = if com.0 > NO_LENGTH_M {
+        wrapped(com.1 - direction_rad)
+    } else {
+        0.0
     };
     match off_rad.abs() {
         off if (off - PI).abs() < 1e-12 => (-com.0, 0.0),
@@ -287,9 +288,10 @@ fn held(tree: &RobotTree, chosen: &[usize], left_out: &mut Vec<Remark>) {
         let before = ancestors(tree, index)
             .iter()
             .any(|body| chosen.contains(body));
-        let why = match before {
-            true => "held where the file has it, what it carries moves as one",
-            false => "held where the file has it: the base of the chain stands still",
+        let why = if before {
+            "held where the file has it, what it carries moves as one"
+        } else {
+            "held where the file has it: the base of the chain stands still"
         };
         let joints = body.joints.iter();
         left_out.extend(

@@ -180,12 +180,13 @@ fn order(robot: Element, carried: &[Option<(usize, Element)>]) -> Result<Vec<usi
         order.extend(&children[link]);
         next += 1;
     }
-    match order.len() == carried.len() {
-        true => Ok(order),
-        false => Err(robot.wrong(
+    if order.len() == carried.len() {
+        Ok(order)
+    } else {
+        Err(robot.wrong(
             "links hang on each other in a ring",
             "mend parent and child",
-        )),
+        ))
     }
 }
 

@@ -77,9 +77,10 @@ fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
     let pairs = tables.iter().zip(joints);
     let columns = pairs.map(|(table, joint)| of_joint(table, joint));
     let columns: Vec<JointColumns> = columns.collect::<Result<_>>()?;
-    match columns.iter().any(|joint| joint.measured().is_some()) {
-        true => Ok(columns),
-        false => Err(log.bad_table(ModelReason::NothingMeasured)),
+    if columns.iter().any(|joint| joint.measured().is_some()) {
+        Ok(columns)
+    } else {
+        Err(log.bad_table(ModelReason::NothingMeasured))
     }
 }
 
@@ -140,9 +141,10 @@ fn rate(table: &Table, axis: Axis, has_position: bool) -> Result<(RateSensor, Op
 
 /// The columns under `key`, if there are any: a table, or a list of tables whose mean counts.
 fn mean(table: &Table, key: &'static str, dimension: Dimension) -> Result<Option<ColumnMean>> {
-    let tables = match table.is_list(key) {
-        true => table.tables(key)?,
-        false => table.table(key)?.into_iter().collect(),
+    let tables = if table.is_list(key) {
+        table.tables(key)?
+    } else {
+        table.table(key)?.into_iter().collect()
     };
     if table.has(key) && tables.is_empty() {
         return Err(table.bad(key, ModelReason::NoColumns { quantity: key }));

@@ -60,17 +60,19 @@ fn effect(table: &Table, joints: &[Joint], laws: &[&'static dyn Effect]) -> Resu
 fn at(table: &Table, effect: &dyn Effect, joints: &[Joint]) -> Result<Option<usize>> {
     if effect.info().scope == Scope::WholeRig {
         let id = effect.info().id;
-        return match table.has("joint") {
-            true => Err(table.bad_key("joint", ModelReason::WholeRig { id })),
-            false => Ok(None),
+        return if table.has("joint") {
+            Err(table.bad_key("joint", ModelReason::WholeRig { id }))
+        } else {
+            Ok(None)
         };
     }
     if table.is_text("joint", "all") {
         let id = effect.info().id;
         let driven = joints.iter().any(|joint| joint.drive.is_driven());
-        return match driven && effect.info().scope != Scope::PassiveJoint {
-            true => Ok(None),
-            false => Err(table.bad("joint", ModelReason::NoDrivenJoint { id })),
+        return if driven && effect.info().scope != Scope::PassiveJoint {
+            Ok(None)
+        } else {
+            Err(table.bad("joint", ModelReason::NoDrivenJoint { id }))
         };
     }
     let joint = table.required("joint", table.index("joint", joints.len())?)?;

@@ -125,9 +125,10 @@ fn inertia(table: &Table, steiner_kg_m2: f64) -> Result<f64> {
         about_joint_kg_m2: about_joint,
         steiner_kg_m2,
     };
-    match inertia_kg_m2 >= 0.0 {
-        true => Ok(inertia_kg_m2),
-        false => Err(table.bad(JOINT_INERTIA, reason)),
+    if inertia_kg_m2 >= 0.0 {
+        Ok(inertia_kg_m2)
+    } else {
+        Err(table.bad(JOINT_INERTIA, reason))
     }
 }
 

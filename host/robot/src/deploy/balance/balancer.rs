@@ -112,9 +112,10 @@ impl<L: SerialLink> Balancer<L> {
         if is_let_down(self.status.condition) {
             return self.finish(None).map(Some);
         }
-        match self.attitude.has_ended() {
-            true => self.let_down(BalanceEnd::AttitudeEnded).map(Some),
-            false => Ok(None),
+        if self.attitude.has_ended() {
+            self.let_down(BalanceEnd::AttitudeEnded).map(Some)
+        } else {
+            Ok(None)
         }
     }
 

@@ -22,9 +22,10 @@ struct Cut<L> {
 
 impl<L: SerialLink> SerialLink for Cut<L> {
     fn send(&mut self, bytes: &[u8]) -> Result<()> {
-        match self.is_cut.load(Ordering::Relaxed) {
-            true => Ok(()),
-            false => self.inner.send(bytes),
+        if self.is_cut.load(Ordering::Relaxed) {
+            Ok(())
+        } else {
+            self.inner.send(bytes)
         }
     }
 

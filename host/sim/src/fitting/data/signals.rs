@@ -59,9 +59,10 @@ impl FitData {
     /// What is measured of a signal in a motion, rad, of a rate rad/s; not a number in gaps.
     pub fn measured(&self, motion: usize, signal: usize) -> &[f64] {
         let (motion, joint) = (&self.motions[motion], self.joint_of(signal));
-        match signal < self.joints() {
-            true => motion.measured(joint, self.signals[signal]),
-            false => motion.rate(joint).unwrap_or_default(),
+        if signal < self.joints() {
+            motion.measured(joint, self.signals[signal])
+        } else {
+            motion.rate(joint).unwrap_or_default()
         }
     }
 

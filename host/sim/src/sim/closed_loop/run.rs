@@ -200,9 +200,10 @@ impl<'a> Run<'a> {
         }
         self.sample += 1;
         // The run ends on time.
-        self.sample_s = match self.sample == self.samples {
-            true => self.samples as f64 * clock.period_s,
-            false => clock.time_s(self.sample, &mut self.rng),
+        self.sample_s = if self.sample == self.samples {
+            self.samples as f64 * clock.period_s
+        } else {
+            clock.time_s(self.sample, &mut self.rng)
         };
         None
     }

@@ -29,9 +29,10 @@ impl Plant {
     /// How fast those readings change, rad/s, at these relative speeds; of a joint whose rate alone
     /// is logged, what its sensor reads.
     pub(in crate::sim) fn encoded_rad_s(&self, joint: usize, speed_rad_s: &[f64]) -> f64 {
-        let true_speed = match self.absolute {
-            true => speed_rad_s[..=joint].iter().sum::<f64>(),
-            false => speed_rad_s[joint],
+        let true_speed = if self.absolute {
+            speed_rad_s[..=joint].iter().sum::<f64>()
+        } else {
+            speed_rad_s[joint]
         };
         let read_rad_s = self.joints[joint].reading_slope() * true_speed;
         self.rate_scale(joint) * read_rad_s + self.rate_bias_rad_s(joint)
@@ -39,17 +40,19 @@ impl Plant {
 
     /// What is read per rate of a joint whose rate alone is logged.
     pub(super) fn rate_scale(&self, joint: usize) -> f64 {
-        match self.rates[joint] {
-            true => self.joints[joint].rate_scale,
-            false => 1.0,
+        if self.rates[joint] {
+            self.joints[joint].rate_scale
+        } else {
+            1.0
         }
     }
 
     /// What is read at rest as the rate of a joint whose rate alone is logged, rad/s.
     pub(super) fn rate_bias_rad_s(&self, joint: usize) -> f64 {
-        match self.rates[joint] {
-            true => self.joints[joint].rate_bias_rad_s,
-            false => 0.0,
+        if self.rates[joint] {
+            self.joints[joint].rate_bias_rad_s
+        } else {
+            0.0
         }
     }
 
@@ -70,9 +73,12 @@ impl Plant {
     /// What the encoders would read without the sensors that trail, where these read `reading_rad`
     /// and the readings change by `speed_rad_s`.
     pub fn ahead_rad(&self, reading_rad: &[f64], speed_rad_s: &[f64]) -> Vec<f64> {
-        let ahead = |joint: usize| match self.rates[joint] {
-            true => reading_rad[joint],
-            false => reading_rad[joint] + self.trail(joint, speed_rad_s[joint]),
+        let ahead = |joint: usize| {
+            if self.rates[joint] {
+                reading_rad[joint]
+            } else {
+                reading_rad[joint] + self.trail(joint, speed_rad_s[joint])
+            }
         };
         (0..self.len()).map(ahead).collect()
     }
@@ -95,9 +101,12 @@ impl Plant {
     /// How fast what the log holds of each signal changes, from how fast the joints' readings
     /// change and how fast that does.
     pub fn reading_slopes(&self, speed_rad_s: &[f64], acceleration_rad_s2: &[f64]) -> Vec<f64> {
-        let slope = |joint: usize| match self.rates[joint] {
-            true => acceleration_rad_s2[joint],
-            false => speed_rad_s[joint],
+        let slope = |joint: usize| {
+            if self.rates[joint] {
+                acceleration_rad_s2[joint]
+            } else {
+                speed_rad_s[joint]
+            }
         };
         let of_joints = (0..self.len()).map(slope);
         if self.rate_readings.is_empty() {
@@ -118,9 +127,10 @@ impl Plant {
         angle_rad: &[f64],
         speed_rad_s: &[f64],
     ) -> f64 {
-        match self.rates[joint] {
-            true => self.encoded_rad_s(joint, speed_rad_s),
-            false => self.encoded_rad(joint, angle_rad),
+        if self.rates[joint] {
+            self.encoded_rad_s(joint, speed_rad_s)
+        } else {
+            self.encoded_rad(joint, angle_rad)
         }
     }
 

@@ -120,9 +120,12 @@ mod tests {
     fn assert_near(left: &[f64], right: &[f64], most: f64) {
         assert_eq!(left.len(), right.len());
         let off = left.iter().zip(right).map(|(a, b)| (a - b).abs());
-        let largest = off.fold(0.0, |largest: f64, off| match off.is_nan() {
-            true => f64::INFINITY,
-            false => largest.max(off),
+        let largest = off.fold(0.0, |largest: f64, off| {
+            if off.is_nan() {
+                f64::INFINITY
+            } else {
+                largest.max(off)
+            }
         });
         assert!(largest < most, "{largest}");
     }

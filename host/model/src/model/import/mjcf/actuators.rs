@@ -149,9 +149,10 @@ fn take(
     };
     let gear = affine.gear;
     let force = range("forcerange", "forcelimited")?.map(|most| (gear * most).abs());
-    let control = match options.clamps {
-        true => range("ctrlrange", "ctrllimited")?,
-        false => None,
+    let control = if options.clamps {
+        range("ctrlrange", "ctrllimited")?
+    } else {
+        None
     };
     affine.is_share = control == Some(1.0);
     let is_plain = affine.bias == [0.0; 3];

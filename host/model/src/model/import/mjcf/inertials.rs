@@ -39,13 +39,10 @@ impl Reader<'_> {
         if compiler.balances && sum < 2.0 * most {
             moments = Vector3::repeat(sum / 3.0);
         }
-        let inertia_kg_m2 = match moments == frame.eigenvalues {
-            true => inertial.inertia_kg_m2,
-            false => {
-                frame.eigenvectors
-                    * Matrix3::from_diagonal(&moments)
-                    * frame.eigenvectors.transpose()
-            }
+        let inertia_kg_m2 = if moments == frame.eigenvalues {
+            inertial.inertia_kg_m2
+        } else {
+            frame.eigenvectors * Matrix3::from_diagonal(&moments) * frame.eigenvectors.transpose()
         };
         Inertial {
             mass_kg,
