@@ -7,7 +7,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
 use handstand::motion::Motion;
-use handstand::sim::{Memory, Plant, Start, predict};
+use handstand::sim::{Plant, PlantMemory, StartState, predict};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::path::Path;
@@ -67,7 +67,7 @@ fn predictions(c: &mut Criterion) {
         time_s,
         ..Motion::default()
     };
-    let start = Start {
+    let start = StartState {
         angle_rad: vec![0.0],
         speed_rad_s: vec![0.0],
         reading_slope: None,
@@ -79,7 +79,7 @@ fn predictions(c: &mut Criterion) {
         let mut out = vec![0.0; motion.len()];
         c.bench_function(&format!("predict 20 s, drag by {name}"), |b| {
             b.iter(|| {
-                let (all, mut memory) = (0..motion.len(), Memory::default());
+                let (all, mut memory) = (0..motion.len(), PlantMemory::default());
                 predict(
                     &plant,
                     &motion,

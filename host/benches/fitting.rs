@@ -7,11 +7,11 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use handstand::Model;
 use handstand::challenge::{Hidden, generate};
 use handstand::diagnose::{DiagnoseOptions, diagnose};
-use handstand::fitting::{FitData, FitOptions, Horizon, fit};
+use handstand::fitting::{FitOptions, FitProblem, Horizon, fit};
 use handstand::log::{LogRequest, read};
 use handstand::model::ParameterPath;
 use handstand::motion::Motion;
-use handstand::sim::{Memory, Plant, predict};
+use handstand::sim::{Plant, PlantMemory, predict};
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Duration;
@@ -47,14 +47,14 @@ fn bench(
 fn identify(c: &mut Criterion) {
     let (model, motions) = bench(|c| c.answer.true_model_toml.clone(), "torque_scale");
     let one = vec![motions[0].clone()];
-    let data = FitData::new(&model, one, Horizon::Whole);
+    let data = FitProblem::new(&model, one, Horizon::Whole);
     let motion = &data.motions[0];
     let plant = Plant::new(&model, motion);
     let start = data.guessed(&data.windows[0]).start(&plant);
     let mut out = vec![0.0; motion.len()];
     c.bench_function("predict 20 s", |b| {
         b.iter(|| {
-            let mut memory = Memory::default();
+            let mut memory = PlantMemory::default();
             predict(
                 &plant,
                 motion,

@@ -7,12 +7,12 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = cli::Cli::typed();
-    let talk = cli.talk();
-    match std::panic::catch_unwind(|| cli.run(&talk)) {
+    let console = cli.console();
+    match std::panic::catch_unwind(|| cli.run(&console)) {
         Ok(Ok(outcome)) => ExitCode::from(outcome.exit_code()),
         Ok(Err(error)) => {
             let code = error.exit_code();
-            talk.error(error);
+            console.error(error);
             ExitCode::from(code)
         }
         Err(_) => {

@@ -215,7 +215,7 @@ fn fitted_rad(diagnosis: &Diagnosis, split: &Split) -> f64 {
 /// Error of a model as it is on the motions fitted, rad.
 fn refit_errors(model: &Model, split: &Split, horizon: Option<Horizon>) -> f64 {
     let horizon = horizon.unwrap_or(Horizon::Whole);
-    let data = handstand::fitting::FitData::new(model, split.training.clone(), horizon);
+    let data = handstand::fitting::FitProblem::new(model, split.training.clone(), horizon);
     handstand::fitting::fit_start_states(model, &data).rms(&data)
 }
 

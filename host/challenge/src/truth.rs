@@ -154,7 +154,7 @@ impl<'a> Arm<'a> {
     }
 }
 
-/// ArmCommands as they were logged: each holds from its time to the next.
+/// Commands as they were logged: each holds from its time to the next.
 #[derive(Debug, Clone, Default)]
 pub struct ArmCommands {
     /// When each is given, s.

@@ -28,4 +28,4 @@ use handstand_sim::{compare, fitting};
 
 pub use live::RobotAccess;
 pub use server::{Lab, LabOptions};
-pub use session::Given;
+pub use session::ProjectFiles;

@@ -62,14 +62,16 @@ impl IntoResponse for LabError {
         let (found, remedy) = self.words();
         let data = json!({ "error": found, "remedy": remedy });
         let mut response = data_reply(self.status(), &data);
-        response.extensions_mut().insert(Said { found, remedy });
+        response
+            .extensions_mut()
+            .insert(RefusalText { found, remedy });
         response
     }
 }
 
 /// What a refusal says, for the page that a browser shows.
 #[derive(Debug, Clone)]
-struct Said {
+struct RefusalText {
     found: String,
     remedy: String,
 }
@@ -80,9 +82,9 @@ pub(super) fn as_page(response: Response) -> Response {
     if !(status.is_client_error() || status.is_server_error()) {
         return response;
     }
-    let found = match response.extensions().get::<Said>() {
+    let found = match response.extensions().get::<RefusalText>() {
         Some(said) => said.clone(),
-        None => Said {
+        None => RefusalText {
             found: match status {
                 StatusCode::BAD_REQUEST => "this is no address of the lab".into(),
                 _ => "this was not carried out".into(),

@@ -3,7 +3,7 @@
 use super::guard::{AccessToken, guard};
 use super::live::{LiveRobot, RobotAccess};
 use super::routes;
-use super::session::{Given, SessionStore};
+use super::session::{ProjectFiles, SessionStore};
 use crate::error::{Error, Result};
 use axum::Router;
 use axum::middleware::from_fn_with_state;
@@ -19,7 +19,7 @@ const LET_DOWN: Duration = Duration::from_secs(3);
 #[derive(Debug, Clone)]
 pub struct LabOptions {
     /// Model and logs that a new session starts with.
-    pub given: Given,
+    pub given: ProjectFiles,
     /// Where sessions are kept.
     pub folder: PathBuf,
     /// Port of the loopback interface; 0 takes a free one.

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::model::{AngleZero, Drive, Model};
 use crate::motion::Motion;
 use crate::output::number::short;
-use crate::sim::Start;
+use crate::sim::StartState;
 
 /// What an outside torque does to a servo that holds an angle, and to one that is told a speed.
 pub(super) fn position_and_velocity() -> Result<Conclusion> {
@@ -52,10 +52,10 @@ fn shift_rad(base: &Model, drive: Drive, input: Vec<f64>) -> f64 {
         payload_kg: 0.3 / (model.gravity_m_s2 * model.log.payload_at_m),
         ..free.clone()
     };
-    let level = Start {
+    let level = StartState {
         angle_rad: vec![std::f64::consts::FRAC_PI_2],
         speed_rad_s: vec![0.0],
-        ..Start::default()
+        ..StartState::default()
     };
     let (_, at_six) = servo::predicted(&model, &free, 0..600, &level);
     let (calm, _) = servo::predicted(&model, &free, 599..samples, &at_six);

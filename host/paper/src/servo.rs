@@ -8,7 +8,7 @@ use crate::model::Model;
 use crate::motion::{Motion, MotionSource};
 use crate::output::number::interval;
 use crate::plot::{Chart, Curve, Tone};
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, PlantMemory, StartState, predict};
 use crate::sysid::generate::{PAPER_TS_S, noise};
 use crate::sysid::{
     BlockMean, DeadZoneMap, IntervalEstimate, OutputQuantity, Side, SupplyLine, blocks,
@@ -113,10 +113,10 @@ fn simulated(
         payload_kg,
         ..empty_motion(command)
     };
-    let rest = Start {
+    let rest = StartState {
         angle_rad: vec![0.0],
         speed_rad_s: vec![0.0],
-        ..Start::default()
+        ..StartState::default()
     };
     let (mut readings, _) = predicted(model, &motion, 0..samples, &rest);
     let jitter = noise(samples, 0.1 * Position::LSB_RAD, seed);
@@ -132,11 +132,11 @@ pub(super) fn predicted(
     model: &Model,
     motion: &Motion,
     stretch: Range<usize>,
-    start: &Start,
-) -> (Vec<f64>, Start) {
+    start: &StartState,
+) -> (Vec<f64>, StartState) {
     let plant = Plant::new(model, motion);
     let mut readings = vec![0.0; stretch.len()];
-    let memory = &mut Memory::default();
+    let memory = &mut PlantMemory::default();
     let end = predict(&plant, motion, stretch, start, memory, &mut readings);
     (readings, end)
 }

@@ -7,7 +7,7 @@ use crate::motion::Motion;
 use crate::value::{framed, plain};
 use crate::work;
 use handstand::compare::{ModelRun, text};
-use handstand::fitting::{FitData, Horizon};
+use handstand::fitting::{FitProblem, Horizon};
 use handstand::motion::Split;
 use handstand::report::{Report, ReportProvenance, html, json};
 use numpy::PyArray2;
@@ -56,7 +56,7 @@ pub fn compare(
     let name = model.file().name;
     work::run(py, None, move |_| {
         let horizon = horizon.unwrap_or(Horizon::Whole);
-        let data = FitData::new(&model.inner, motions.clone(), horizon);
+        let data = FitProblem::new(&model.inner, motions.clone(), horizon);
         let run = ModelRun::new(model.inner.clone(), data, horizon);
         let comparison = run.comparison(&name);
         let split = Split {

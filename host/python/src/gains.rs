@@ -320,7 +320,7 @@ impl Gains {
 }
 
 impl Gains {
-    fn fixed(&self) -> PyResult<&handstand::synth::Fixed> {
+    fn fixed(&self) -> PyResult<&handstand::synth::FixedDesign> {
         self.design.fixed.as_ref().ok_or_else(|| {
             failed("gains in continuous time have no fixed-point law\nremedy: give ts_s")
         })

@@ -1,7 +1,7 @@
 //! `log_check`: are logs fit for use, and do they agree with the model's file?
 
 use crate::errors::{exception, usage};
-use crate::logs::{FrameFile, Given, given, is_frame};
+use crate::logs::{FrameFile, LogSource, given, is_frame};
 use crate::model::Model;
 use crate::value::plain;
 use crate::work;
@@ -44,8 +44,8 @@ pub fn log_check(
     let requests = match &frame {
         Some(file) => vec![file.request()],
         None => match given(logs, &model)? {
-            Given::Files(files) => files,
-            Given::Motions(_) => {
+            LogSource::Files(files) => files,
+            LogSource::Motions(_) => {
                 return Err(usage(
                     "motions are read already: of units and columns they say nothing",
                     "give the files, or one DataFrame",

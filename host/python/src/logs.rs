@@ -12,7 +12,7 @@ use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
 
 /// What was given.
-pub enum Given {
+pub enum LogSource {
     /// Files, as the command line names them.
     Files(Vec<LogRequest>),
     /// Motions, those of files read as the model declares their columns.
@@ -129,7 +129,7 @@ pub fn request(path: &Bound<'_, PyAny>) -> PyResult<LogRequest> {
 }
 
 /// What an argument holds; motions are held against the model.
-pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
+pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<LogSource> {
     let is_one = logs.is_instance_of::<PyString>()
         || logs.is_instance_of::<Motion>()
         || logs.hasattr("__fspath__")?
@@ -148,7 +148,7 @@ pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
     }
     if files {
         let requests = items.iter().map(request).collect::<PyResult<_>>()?;
-        return Ok(Given::Files(requests));
+        return Ok(LogSource::Files(requests));
     }
     let mut motions = Vec::new();
     for item in &items {
@@ -161,7 +161,7 @@ pub fn given(logs: &Bound<'_, PyAny>, model: &Model) -> PyResult<Given> {
             Err(_) => motions.extend(motions_of(item, model)?),
         }
     }
-    Ok(Given::Motions(motions))
+    Ok(LogSource::Motions(motions))
 }
 
 /// Refuses a motion of another rig.
@@ -195,12 +195,12 @@ pub fn fits(motion: &handstand::motion::Motion, model: &Model) -> PyResult<()> {
     Ok(())
 }
 
-impl Given {
+impl LogSource {
     /// The motions.
     pub fn motions(self, model: &Model) -> PyResult<Vec<handstand::motion::Motion>> {
         match self {
-            Given::Files(files) => read(&files, &model.inner.log).map_err(exception),
-            Given::Motions(motions) => Ok(motions),
+            LogSource::Files(files) => read(&files, &model.inner.log).map_err(exception),
+            LogSource::Motions(motions) => Ok(motions),
         }
     }
 }
@@ -215,11 +215,11 @@ pub fn learned_and_held_out(
         .map(|hold_out| given(hold_out, model))
         .transpose()?;
     Ok(match (given(logs, model)?, hold_out) {
-        (Given::Files(training), None) => Learned::Files(LogSet {
+        (LogSource::Files(training), None) => Learned::Files(LogSet {
             training,
             held_out: Vec::new(),
         }),
-        (Given::Files(training), Some(Given::Files(held_out))) => {
+        (LogSource::Files(training), Some(LogSource::Files(held_out))) => {
             Learned::Files(LogSet { training, held_out })
         }
         (training, held_out) => {

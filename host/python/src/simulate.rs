@@ -8,7 +8,7 @@ use crate::motion::Motion;
 use crate::work;
 use handstand::model::{MeasuredSignal, hanging};
 use handstand::motion::MotionSource;
-use handstand::sim::{Memory, Plant, Start, predict};
+use handstand::sim::{Plant, PlantMemory, StartState, predict};
 use pyo3::prelude::*;
 
 /// Simulates a model with all its effects.
@@ -69,10 +69,10 @@ pub fn simulate(
         ..Default::default()
     })?;
     fits(&motion.inner, &model)?;
-    let start = Start {
+    let start = StartState {
         angle_rad: state("angle_rad", angle_rad, hanging(&model.inner))?,
         speed_rad_s: state("speed_rad_s", speed_rad_s, vec![0.0; joints])?,
-        ..Start::default()
+        ..StartState::default()
     };
     work::run(py, None, move |_| simulated(&model, motion, &start))
 }
@@ -96,12 +96,12 @@ fn state(name: &str, given: Option<&Bound<'_, PyAny>>, rest: Vec<f64>) -> PyResu
     }
 }
 
-fn simulated(model: &Model, motion: Motion, start: &Start) -> Motion {
+fn simulated(model: &Model, motion: Motion, start: &StartState) -> Motion {
     let mut motion = motion.inner;
     let (joints, samples) = (motion.position_rad.len(), motion.len());
     let plant = Plant::new(&model.inner, &motion);
     let mut readings = vec![0.0; plant.signals() * samples];
-    let mut memory = Memory::default();
+    let mut memory = PlantMemory::default();
     predict(
         &plant,
         &motion,

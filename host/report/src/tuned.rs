@@ -1,6 +1,6 @@
 //! What a search of weights found, in words.
 
-use crate::study::{Tried, Tuned};
+use crate::study::{Tuned, WeightTrial};
 use crate::synth::Weight;
 
 /// The chosen weights as options, and how they compare with plain ones.
@@ -22,7 +22,7 @@ pub fn tuned_text(tuned: &Tuned) -> String {
         )
     };
     let list = |values: &[f64]| Weight::Diagonal(values.to_vec());
-    let Tried { q, r, .. } = &tuned.tried[tuned.chosen];
+    let WeightTrial { q, r, .. } = &tuned.tried[tuned.chosen];
     format!(
         "tuned, of {} weights: --q {} --r {}: {}; by Bryson's rule: {}; the paper's (--q 100): {}",
         tuned.tried.len(),

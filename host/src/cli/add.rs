@@ -25,7 +25,7 @@
 //! motions held out is not reduced by as much. `--json` prints what `handstand fit`
 //! prints, and `effects`, as `["delay@1"]`.
 
-use super::{ExitStatus, Talk, fit, input};
+use super::{Console, ExitStatus, fit, input};
 use handstand::fitting::{Addition, Candidate, Unhelpful, add_effects_from, candidates_named};
 use handstand::log::LogRequest;
 use handstand::model::ParameterPath;
@@ -55,30 +55,30 @@ pub struct AddArgs {
 }
 
 /// Fits, writes, prints.
-pub fn run(args: &AddArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &AddArgs, console: &Console) -> Result<ExitStatus> {
     let text = input::model_text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
-    let (candidates, start) = args.asked(&model, talk)?;
-    let split = args.fit.motions(&model, &args.logs, talk)?;
+    let (candidates, start) = args.asked(&model, console)?;
+    let split = args.fit.motions(&model, &args.logs, console)?;
     let horizon = args.fit.judging.run.horizon;
     let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
-    let (path, progress) = (&args.model, talk.progress());
+    let (path, progress) = (&args.model, console.progress());
     let added = add_effects_from(&text, path, &candidates, &start, &split, horizon, &progress)?;
     // Nothing is printed beside the bar.
     drop(progress);
     match added {
         Addition::Added { text, refitted } => {
             let before = "for the model refitted without";
-            fit::write(&refitted, &text, &names, before, &args.fit, talk)
+            fit::write(&refitted, &text, &names, before, &args.fit, console)
         }
-        Addition::Unhelpful(why) => refuse(&why, &names, talk),
-        Addition::Undetermined(why) => fit::refuse(&why, talk),
+        Addition::Unhelpful(why) => refuse(&why, &names, console),
+        Addition::Undetermined(why) => fit::refuse(&why, console),
     }
 }
 
 impl AddArgs {
     /// The effects to add, and the values to start from.
-    fn asked(&self, model: &Model, talk: &Talk) -> Result<Asked> {
+    fn asked(&self, model: &Model, console: &Console) -> Result<Asked> {
         let Some(file) = &self.from else {
             return Ok((candidates_named(&self.effects, model)?, Vec::new()));
         };
@@ -91,13 +91,13 @@ impl AddArgs {
         let start = diagnosis.values(&candidates, model)?;
         let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
         let (names, file) = (names.join(", "), file.display());
-        talk.say(&if start.is_empty() {
+        console.say(&if start.is_empty() {
             format!("{file} gives no values of {names}: none is started from")
         } else {
             format!("{names}: from the values of {file}")
         });
         for path in diagnosis.wrong_values() {
-            talk.say(&format!(
+            console.say(&format!(
                 "{file}: `{path}` is wrong as well; `handstand fit --free {path}`"
             ));
         }
@@ -109,10 +109,10 @@ impl AddArgs {
 type Asked = (Vec<Candidate>, Vec<(ParameterPath, f64)>);
 
 /// Says that the effects do not help, and writes nothing.
-fn refuse(unhelpful: &Unhelpful, names: &[String], talk: &Talk) -> Result<ExitStatus> {
+fn refuse(unhelpful: &Unhelpful, names: &[String], console: &Console) -> Result<ExitStatus> {
     let (error, why) = (unhelpful.error(), unhelpful.why(names));
-    if talk.json {
-        talk.data(&json!({ "refused": why, "error": error }))?;
+    if console.json {
+        console.data(&json!({ "refused": why, "error": error }))?;
     } else {
         let remedy = match unhelpful {
             Unhelpful::NotFound(_) => {
@@ -123,7 +123,7 @@ fn refuse(unhelpful: &Unhelpful, names: &[String], talk: &Talk) -> Result<ExitSt
                 "`handstand diagnose` says which effect the logs ask for."
             }
         };
-        talk.print(&format!("refused: {why}; nothing is written. {remedy}"))?;
+        console.print(&format!("refused: {why}; nothing is written. {remedy}"))?;
     }
     Ok(ExitStatus::Refused)
 }

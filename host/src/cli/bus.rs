@@ -25,7 +25,7 @@ mod registers;
 mod scan;
 mod setup;
 
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::Result;
 pub use scan::garbled_words;
 
@@ -55,17 +55,17 @@ pub enum BusCommand {
 }
 
 /// Does it.
-pub fn run(command: &BusCommand, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(command: &BusCommand, console: &Console) -> Result<ExitStatus> {
     match command {
-        BusCommand::Scan(args) => scan::run(args, talk),
-        BusCommand::Read(args) => registers::read(args, talk),
-        BusCommand::Write(args) => registers::write(args, talk),
-        BusCommand::Setup(args) => setup::run(args, talk),
-        BusCommand::Monitor(args) => monitor::run(args, talk),
-        BusCommand::Reboot(args) => reboot::run(args, talk),
-        BusCommand::Backup(args) => backup::backup(args, talk),
-        BusCommand::Restore(args) => backup::restore(args, talk),
-        BusCommand::Doctor(args) => doctor::run(args, talk),
-        BusCommand::Log(args) => log::run(args, talk),
+        BusCommand::Scan(args) => scan::run(args, console),
+        BusCommand::Read(args) => registers::read(args, console),
+        BusCommand::Write(args) => registers::write(args, console),
+        BusCommand::Setup(args) => setup::run(args, console),
+        BusCommand::Monitor(args) => monitor::run(args, console),
+        BusCommand::Reboot(args) => reboot::run(args, console),
+        BusCommand::Backup(args) => backup::backup(args, console),
+        BusCommand::Restore(args) => backup::restore(args, console),
+        BusCommand::Doctor(args) => doctor::run(args, console),
+        BusCommand::Log(args) => log::run(args, console),
     }
 }

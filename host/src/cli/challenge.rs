@@ -13,7 +13,7 @@
 //! `added`, `solved`, `values` (`key`, `true_value`, `estimate`), `nominal_error_rad`, `error_rad`,
 //! `true_error_rad`.
 
-use super::{ExitStatus, Talk, show};
+use super::{Console, ExitStatus, show};
 use handstand::challenge::{self, ChallengeScore, Hidden, kind_named};
 use handstand::diagnose::whole_error_rad;
 use handstand::fitting::effect_named;
@@ -55,29 +55,29 @@ pub struct ScoreArgs {
 }
 
 /// Makes or scores.
-pub fn run(command: &ChallengeCommand, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(command: &ChallengeCommand, console: &Console) -> Result<ExitStatus> {
     match command {
-        ChallengeCommand::New(args) => new(args, talk),
+        ChallengeCommand::New(args) => new(args, console),
         ChallengeCommand::Score(args) => {
             let score =
                 challenge::score(&args.folder, &Model::load(&args.model)?, whole_error_rad)?;
-            talk.result(&score, || text(&score))?;
+            console.result(&score, || text(&score))?;
             Ok(ExitStatus::answer(score.solved))
         }
     }
 }
 
-fn new(args: &New, talk: &Talk) -> Result<ExitStatus> {
+fn new(args: &New, console: &Console) -> Result<ExitStatus> {
     let made = challenge::generate(args.seed, hidden(args.effect.as_deref())?);
     challenge::write(&made, &args.output)?;
-    if talk.json {
-        talk.data(&json!({
+    if console.json {
+        console.data(&json!({
             "folder": args.output.to_string_lossy(),
             "model": "nominal.toml",
             "logs": made.logs.iter().map(|(name, _)| name).collect::<Vec<_>>(),
         }))?;
     } else {
-        talk.say(&format!(
+        console.say(&format!(
             "wrote {}: its README.txt says what to do",
             args.output.display()
         ));

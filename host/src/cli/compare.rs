@@ -22,7 +22,7 @@
 //! `failures`, `traces`, `closed_loop`) and `provenance`.
 
 use super::page::{self, PageFile};
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::log::{LogFinding, LogRequest, read_with_findings};
 use handstand::motion::Split;
 use handstand::report::{Report, file_names, html, json};
@@ -49,7 +49,7 @@ pub struct CompareArgs {
 }
 
 /// Compares, prints, writes the page.
-pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &CompareArgs, console: &Console) -> Result<ExitStatus> {
     args.page.vacant()?;
     let files: Vec<&PathBuf> = std::iter::once(&args.model).chain(&args.others).collect();
     let mut models = Vec::new();
@@ -67,7 +67,7 @@ pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
         closed_loops.push(input::closed_loop(&model, plan.as_ref(), &motions)?);
         models.push((name, model, motions));
     }
-    input::warn(&findings, talk);
+    input::warn(&findings, console);
     let compared = models
         .iter()
         .map(|(name, model, motions)| (name.as_str(), model, motions.as_slice()));
@@ -84,9 +84,9 @@ pub fn run(args: &CompareArgs, talk: &Talk) -> Result<ExitStatus> {
         title: format!("{} against measured motions", comparisons[0].model),
         comparisons,
         diagnosis: None,
-        provenance: page::provenance(&files, &split, talk)?,
+        provenance: page::provenance(&files, &split, console)?,
     };
-    talk.result(&json(&report), || text)?;
-    args.page.write(|| Ok(html(&report)), talk)?;
+    console.result(&json(&report), || text)?;
+    args.page.write(|| Ok(html(&report)), console)?;
     Ok(ExitStatus::Done)
 }

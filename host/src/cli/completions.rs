@@ -6,7 +6,7 @@
 //! $ handstand completions fish > ~/.config/fish/completions/handstand.fish
 //! ```
 
-use super::{Cli, ExitStatus, Talk};
+use super::{Cli, Console, ExitStatus};
 use clap::CommandFactory as _;
 use clap_complete::Shell;
 use handstand::Result;
@@ -19,14 +19,14 @@ pub struct CompletionsArgs {
 }
 
 /// Prints the shell's script.
-pub fn run(args: &CompletionsArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &CompletionsArgs, console: &Console) -> Result<ExitStatus> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "handstand", &mut script);
     let script = String::from_utf8_lossy(&script);
-    if talk.json {
-        talk.data(&serde_json::json!({ "script": script }))?
+    if console.json {
+        console.data(&serde_json::json!({ "script": script }))?
     } else {
-        talk.print(&script)?
+        console.print(&script)?
     }
     Ok(ExitStatus::Done)
 }

@@ -24,7 +24,7 @@
 //! `fallen`, `rms_angle_rad`, `limit_cycle_rad`, `rms_torque_nm`, `region_rad`, `region_open`.
 
 use super::gains_choice::GainsChoice;
-use super::{ExitStatus, Talk, input, show};
+use super::{Console, ExitStatus, input, show};
 use handstand::study::{
     CONDITIONS, Case, Judging, LoopCondition, REGION_JUDGEMENTS, STABILISED_SHARE, judge, region,
 };
@@ -97,9 +97,9 @@ struct ControllerTrial {
 }
 
 /// Lists or tries.
-pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &ControllersArgs, console: &Console) -> Result<ExitStatus> {
     let Some(file) = &args.model else {
-        return list::run(talk);
+        return list::run(console);
     };
     let designs = chosen_designs(&args.controllers)?;
     let conditions = chosen_conditions(&args.conditions)?;
@@ -117,8 +117,8 @@ pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
     let designs = args
         .gains
         .designs(&args.controllers, designs, (&model, args.ts))?;
-    show::omitted(&model, talk)?;
-    let trials = trials(args, &model, &designs, &conditions, talk)?;
+    show::omitted(&model, console)?;
+    let trials = trials(args, &model, &designs, &conditions, console)?;
     if let Some(file) = &args.csv {
         output::write_new(file, &result::csv(&trials), args.force)?;
     }
@@ -126,7 +126,7 @@ pub fn run(args: &ControllersArgs, talk: &Talk) -> Result<ExitStatus> {
         let plot = result::plot(&trials, &designs, &conditions);
         output::write_new(file, &plot, args.force)?;
     }
-    talk.result(&trials, || result::text(&trials, &designs, &conditions))?;
+    console.result(&trials, || result::text(&trials, &designs, &conditions))?;
     let answered = |condition: &&LoopCondition| {
         let mut own = trials.iter().filter(|t| t.condition == condition.id);
         own.any(|trial| trial.stabilised >= STABILISED_SHARE)
@@ -139,7 +139,7 @@ fn trials(
     model: &Model,
     designs: &[&'static dyn ControllerDesign],
     conditions: &[&'static LoopCondition],
-    talk: &Talk,
+    console: &Console,
 ) -> Result<Vec<ControllerTrial>> {
     let judging = Judging {
         runs: args.robots as usize,
@@ -152,7 +152,7 @@ fn trials(
         ..judging
     };
     let each = judging.runs + REGION_JUDGEMENTS * few.runs;
-    let bar = talk.bar((each * designs.len() * conditions.len()) as u64);
+    let bar = console.bar((each * designs.len() * conditions.len()) as u64);
     let mut trials = Vec::new();
     for condition in conditions {
         for design in designs {

@@ -23,7 +23,7 @@
 
 use super::controllers::{chosen_conditions, chosen_designs};
 use super::gains_choice::GainsChoice;
-use super::{ExitStatus, Talk, input, show};
+use super::{Console, ExitStatus, input, show};
 use handstand::output::table::TableColumn;
 use handstand::study::{
     Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
@@ -91,20 +91,20 @@ struct PathBudget {
 }
 
 /// Searches and prints.
-pub fn run(args: &DelaysArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &DelaysArgs, console: &Console) -> Result<ExitStatus> {
     let designs = chosen_designs(&args.controllers)?;
     let model = Model::load(&args.model)?;
     let designs = args
         .gains
         .designs(&args.controllers, designs, (&model, args.ts))?;
-    let margins = search(args, &model, &designs, talk)?;
+    let margins = search(args, &model, &designs, console)?;
     let budget = |path| dead_times().map(move |servo_s| (path, servo_s));
     let ways = SIGNAL_PATHS.iter().flat_map(budget);
     let paths: Vec<_> = ways
         .map(|(path, s)| PathBudget::of(path, s, &margins))
         .collect();
     let data = json!({ "controllers": margins, "paths": paths });
-    talk.result(&data, || text(&margins, &paths, args))?;
+    console.result(&data, || text(&margins, &paths, args))?;
     Ok(ExitStatus::Done)
 }
 
@@ -117,7 +117,7 @@ fn search(
     args: &DelaysArgs,
     model: &Model,
     designs: &[&'static dyn ControllerDesign],
-    talk: &Talk,
+    console: &Console,
 ) -> Result<Vec<DelayMargins>> {
     let mut weighed = Case::ideal(model.clone(), DEFAULT, args.ts);
     args.gains.weigh(&mut weighed)?;
@@ -134,7 +134,7 @@ fn search(
         seed: args.seed,
     };
     let (step_s, until_s) = (1e-3 * args.step_ms, 1e-3 * args.until_ms);
-    let bar = talk.bar(designs.len() as u64);
+    let bar = console.bar(designs.len() as u64);
     let mut margins = Vec::new();
     for design in designs {
         bar.set_message(design.info().title.to_string());

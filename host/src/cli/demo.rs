@@ -29,7 +29,7 @@
 //! `true_value`, `estimate`, `interval`), `named`.
 
 use super::challenge::text as challenge_text;
-use super::{Cli, Command, ExitStatus, Talk, diagnose};
+use super::{Cli, Command, Console, ExitStatus, diagnose};
 use clap::Parser as _;
 use handstand::challenge::{self, ChallengeScore};
 use handstand::diagnose::{Diagnosis, FittedEffect, Verdict, whole_error_rad};
@@ -59,7 +59,7 @@ const BENCH_SEED: u64 = 3;
 const ROBOT_SEED: u64 = 2;
 
 /// Runs the loop.
-pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &DemoArgs, console: &Console) -> Result<ExitStatus> {
     let (name, seed, takes) = if args.robot {
         ("robot", ROBOT_SEED, "one to three minutes")
     } else {
@@ -70,14 +70,14 @@ pub fn run(args: &DemoArgs, talk: &Talk) -> Result<ExitStatus> {
         None => temporary(name)?,
     };
     let seed = args.seed.unwrap_or(seed);
-    talk.say(&format!(
+    console.say(&format!(
         "This takes {takes} on a machine with two cores free."
     ));
-    talk.say(&format!("Everything is written to {}", output.display()));
+    console.say(&format!("Everything is written to {}", output.display()));
     if args.robot {
-        robot(seed, &output, talk)
+        robot(seed, &output, console)
     } else {
-        bench(args.effect.as_deref(), seed, &output, talk)
+        bench(args.effect.as_deref(), seed, &output, console)
     }
 }
 
@@ -103,45 +103,46 @@ impl Files {
     }
 }
 
-fn bench(effect: Option<&str>, seed: u64, output: &Path, talk: &Talk) -> Result<ExitStatus> {
+fn bench(effect: Option<&str>, seed: u64, output: &Path, console: &Console) -> Result<ExitStatus> {
     let files = Files::of(output);
     let (nominal, [a, b, c]) = (&files.nominal, &files.logs);
     let seed = seed.to_string();
 
-    talk.say("A bench arm, its model, three logs; something may be missing from the model.");
+    console.say("A bench arm, its model, three logs; something may be missing from the model.");
     let mut new = vec!["challenge", "new", "--seed", &seed, "-o", &files.folder];
     new.extend(effect.iter().flat_map(|effect| ["--effect", effect]));
-    step(&new, talk)?;
-    talk.say("\nAre the logs fit to be learned from?");
-    step(&["log", "check", nominal, a, b, c], talk)?;
-    talk.say("\nHow far is the model from what was measured, and where?");
-    step(&["compare", nominal, a, b, c], talk)?;
-    talk.say("\nWhat is missing? c.csv is held out: only the motions it predicts prove an effect.");
+    step(&new, console)?;
+    console.say("\nAre the logs fit to be learned from?");
+    step(&["log", "check", nominal, a, b, c], console)?;
+    console.say("\nHow far is the model from what was measured, and where?");
+    step(&["compare", nominal, a, b, c], console)?;
+    console
+        .say("\nWhat is missing? c.csv is held out: only the motions it predicts prove an effect.");
     let held_out = ["--holdout", c, "--report", &files.page];
     let words = [&["diagnose", nominal, a, b], &held_out[..]].concat();
-    let Some(found) = diagnosed(&words, talk)? else {
+    let Some(found) = diagnosed(&words, console)? else {
         return Ok(ExitStatus::Refused);
     };
-    let model = improved(&found, &files, talk)?;
+    let model = improved(&found, &files, console)?;
     let end = Model::load(model.unwrap_or(nominal).as_ref())?;
     let score = challenge::score(output, &end, whole_error_rad)?;
     match model {
         Some(model) => {
-            talk.say("\nThe answer:");
-            announce(&["challenge", "score", &files.folder, model], talk);
-            talk.result(&score, || challenge_text(&score))?;
+            console.say("\nThe answer:");
+            announce(&["challenge", "score", &files.folder, model], console);
+            console.result(&score, || challenge_text(&score))?;
         }
         None => {
-            talk.say(&format!("\n{}", left(&found, &files)));
-            talk.result(&score, || opened(&found, &score))?;
+            console.say(&format!("\n{}", left(&found, &files)));
+            console.result(&score, || opened(&found, &score))?;
         }
     }
-    talk.say(&format!("The page with the pictures: {}", files.page));
+    console.say(&format!("The page with the pictures: {}", files.page));
     Ok(ExitStatus::Done)
 }
 
 /// Does what the diagnosis advises, and compares; the better model, where it advises one.
-fn improved<'a>(found: &Diagnosis, files: &'a Files, talk: &Talk) -> Result<Option<&'a str>> {
+fn improved<'a>(found: &Diagnosis, files: &'a Files, console: &Console) -> Result<Option<&'a str>> {
     let (nominal, model, [a, b, c]) = (&files.nominal, &files.model, &files.logs);
     let horizon = found.horizon_s.map(|s| s.to_string());
     let horizon: Vec<&str> = horizon.iter().flat_map(|s| ["--horizon", s]).collect();
@@ -162,7 +163,7 @@ fn improved<'a>(found: &Diagnosis, files: &'a Files, talk: &Talk) -> Result<Opti
         }
         _ => return Ok(None),
     };
-    talk.say(&format!(
+    console.say(&format!(
         "\n{why}, and the two files side by side as they are, on the motion held out:"
     ));
     if found.verdict == Verdict::Named {
@@ -170,11 +171,11 @@ fn improved<'a>(found: &Diagnosis, files: &'a Files, talk: &Talk) -> Result<Opti
     }
     words.extend(["--holdout", c, "-o", model]);
     words.extend(&horizon);
-    if step(&words, talk)? != ExitStatus::Done {
+    if step(&words, console)? != ExitStatus::Done {
         return Ok(None);
     }
     let compare = ["compare", nominal, c, "--model", model];
-    step(&[&compare[..], &horizon].concat(), talk)?;
+    step(&[&compare[..], &horizon].concat(), console)?;
     Ok(Some(model))
 }
 
@@ -224,32 +225,32 @@ fn temporary(name: &str) -> Result<PathBuf> {
 }
 
 #[cfg(feature = "virtual-cm5")]
-fn robot(seed: u64, output: &Path, talk: &Talk) -> Result<ExitStatus> {
-    super::demo_robot::run(seed, output, talk)
+fn robot(seed: u64, output: &Path, console: &Console) -> Result<ExitStatus> {
+    super::demo_robot::run(seed, output, console)
 }
 
 #[cfg(not(feature = "virtual-cm5"))]
-fn robot(_seed: u64, _output: &Path, _talk: &Talk) -> Result<ExitStatus> {
+fn robot(_seed: u64, _output: &Path, _talk: &Console) -> Result<ExitStatus> {
     Err(super::simulated::absent())
 }
 
 /// Says a command line and runs it.
-fn step(words: &[&str], talk: &Talk) -> Result<ExitStatus> {
-    let (command, talk) = parsed(words, talk)?;
-    command.run(&talk)
+fn step(words: &[&str], console: &Console) -> Result<ExitStatus> {
+    let (command, console) = parsed(words, console)?;
+    command.run(&console)
 }
 
 /// Says a diagnosis's command line and runs it.
-fn diagnosed(words: &[&str], talk: &Talk) -> Result<Option<Diagnosis>> {
-    let (command, talk) = parsed(words, talk)?;
+fn diagnosed(words: &[&str], console: &Console) -> Result<Option<Diagnosis>> {
+    let (command, console) = parsed(words, console)?;
     match &command {
-        Command::Diagnose(args) => Ok(Some(diagnose::find(args, &talk)?)),
+        Command::Diagnose(args) => Ok(Some(diagnose::find(args, &console)?)),
         _ => Ok(None),
     }
 }
 
-fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {
-    let line = announce(words, talk);
+fn parsed(words: &[&str], console: &Console) -> Result<(Command, Console)> {
+    let line = announce(words, console);
     let all = std::iter::once(&"handstand").chain(words);
     let cli = Cli::try_parse_from(all).map_err(|error| {
         Error::usage(
@@ -260,11 +261,11 @@ fn parsed(words: &[&str], talk: &Talk) -> Result<(Command, Talk)> {
     let command = cli
         .command
         .ok_or_else(|| Error::usage("no command", "name one"))?;
-    Ok((command, talk.transcript(line)))
+    Ok((command, console.transcript(line)))
 }
 
-fn announce(words: &[&str], talk: &Talk) -> String {
+fn announce(words: &[&str], console: &Console) -> String {
     let line = format!("handstand {}", words.join(" "));
-    talk.say(&format!("\n$ {line}"));
+    console.say(&format!("\n$ {line}"));
     line
 }

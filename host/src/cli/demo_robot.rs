@@ -1,8 +1,8 @@
 //! `handstand demo --robot`: the whole circle on a virtual robot behind the CM-5's firmware.
 
+use super::console::show;
 use super::show::{or_dash, table_of};
-use super::talk::show;
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::deploy::rehearsal::BalanceAttempt;
 use handstand::diagnose::Verdict;
 use handstand::log::LogRequest;
@@ -14,19 +14,19 @@ use std::path::Path;
 
 /// Runs the circle with the robot of this seed in a new folder; exit code 1 where the robot does not
 /// stand in the end.
-pub fn run(seed: u64, output: &Path, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(seed: u64, output: &Path, console: &Console) -> Result<ExitStatus> {
     let refused = |error| Error::file(output, "create", error);
     std::fs::create_dir_all(output).map_err(refused)?;
-    let bar = talk.bar(0);
+    let bar = console.bar(0);
     let demo = circle(seed, output, &|step| match step {
         DemoStep::Diagnosing(progress) => show(&bar, progress),
-        step => bar.suspend(|| talk.say(&words(&step))),
+        step => bar.suspend(|| console.say(&words(&step))),
     })?;
     drop(bar);
-    talk.result(&demo, || text(&demo))?;
+    console.result(&demo, || text(&demo))?;
     let page = output.join("page.html");
-    talk.say(&format!("Both attempts side by side: {}", page.display()));
-    talk.say(&commands(&demo, output));
+    console.say(&format!("Both attempts side by side: {}", page.display()));
+    console.say(&commands(&demo, output));
     Ok(ExitStatus::answer(demo.learned.stands))
 }
 

@@ -27,7 +27,7 @@ mod each;
 
 use super::interrupt::Interrupt;
 use super::page::{self, PageFile};
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use each::EachArgs;
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare_all};
 use handstand::diagnose::conventions::ModelFile;
@@ -88,35 +88,35 @@ impl DiagnoseArgs {
 }
 
 /// Diagnoses, prints, writes the page.
-pub fn run(args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &DiagnoseArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(folder) = &args.each.folder {
-        return each::run(folder, args, talk);
+        return each::run(folder, args, console);
     }
-    let diagnosis = find(args, talk)?;
+    let diagnosis = find(args, console)?;
     Ok(ExitStatus::answer(diagnosis.verdict != Verdict::Unfit))
 }
 
 /// The diagnosis itself, printed and written as by [`run`].
-pub fn find(args: &DiagnoseArgs, talk: &Talk) -> Result<Diagnosis> {
+pub fn find(args: &DiagnoseArgs, console: &Console) -> Result<Diagnosis> {
     args.page.vacant()?;
     let model = input::model(&args.model)?;
     let plan = args.plan.load(&model)?;
-    let LogDiagnosis { diagnosis, split } = try_all(&model, args, talk)?;
+    let LogDiagnosis { diagnosis, split } = try_all(&model, args, console)?;
     if diagnosis.verdict == Verdict::Unfit {
-        print(&diagnosis, &[], talk)?;
+        print(&diagnosis, &[], console)?;
         return Ok(diagnosis);
     }
     let compared = Compared::new(&model, &diagnosis, plan.as_ref(), args)?;
-    print(&diagnosis, &compared.named_loops(), talk)?;
+    print(&diagnosis, &compared.named_loops(), console)?;
     let page = || {
         Ok(html(&Report {
             title: format!("What {} is missing", model.name),
             comparisons: compared.comparisons(diagnosis.horizon_s, args),
             diagnosis: Some(diagnosis.clone()),
-            provenance: page::provenance(&[&args.model], &split, talk)?,
+            provenance: page::provenance(&[&args.model], &split, console)?,
         }))
     };
-    args.page.write(page, talk)?;
+    args.page.write(page, console)?;
     Ok(diagnosis)
 }
 
@@ -135,7 +135,7 @@ fn options(model: &Model, args: &DiagnoseArgs) -> Result<DiagnoseOptions> {
     })
 }
 
-fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnosis> {
+fn try_all(model: &Model, args: &DiagnoseArgs, console: &Console) -> Result<LogDiagnosis> {
     let options = options(model, args)?;
     let logs = args.log_set();
     let text = input::text(&args.model)?;
@@ -144,11 +144,11 @@ fn try_all(model: &Model, args: &DiagnoseArgs, talk: &Talk) -> Result<LogDiagnos
         text: &text,
     };
     let interrupt = Interrupt::accepting(&options.stop);
-    let shown = talk.progress();
+    let shown = console.progress();
     let told = AtomicBool::new(false);
     let heard = |progress: Progress| {
         if interrupt.has_come() && !told.swap(true, Ordering::Relaxed) {
-            talk.say(&stopping(&progress));
+            console.say(&stopping(&progress));
         }
         shown(progress);
     };
@@ -165,17 +165,17 @@ fn stopping(progress: &Progress) -> String {
 }
 
 /// Prints the diagnosis, and the closed loops before and after it where there are any.
-fn print(diagnosis: &Diagnosis, loops: &[NamedLoop], talk: &Talk) -> Result<()> {
-    if talk.json {
+fn print(diagnosis: &Diagnosis, loops: &[NamedLoop], console: &Console) -> Result<()> {
+    if console.json {
         let mut value = diagnosis_json(diagnosis);
         let after = loops.get(1).map(|(_, after)| after);
         value["closed_loop"] = loops.first().map_or(
             json!(null),
             |(_, before)| json!({ "before": before, "after": after }),
         );
-        return talk.data(&value);
+        return console.data(&value);
     }
-    talk.print(&(diagnosis_text(diagnosis) + &closed_loop_text(loops)))
+    console.print(&(diagnosis_text(diagnosis) + &closed_loop_text(loops)))
 }
 
 /// A model's name and its closed loop.

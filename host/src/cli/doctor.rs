@@ -7,7 +7,7 @@
 //! Exit code 1: a port is there that may not be opened. `--json` prints `ports` (`name`,
 //! `may_open`) and `tools` (`name`, `wanted_for`, `path`, null where it is missing).
 
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::Result;
 use handstand::link::{PERMISSION_REMEDY, may_open, ports};
 use handstand::output::table::plain_table;
@@ -81,7 +81,7 @@ struct ToolFound {
 }
 
 /// Prints ports and tools.
-pub fn run(_: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(_: &DoctorArgs, console: &Console) -> Result<ExitStatus> {
     let ports: Vec<PortFound> = ports()
         .into_iter()
         .map(|name| PortFound {
@@ -95,13 +95,13 @@ pub fn run(_: &DoctorArgs, talk: &Talk) -> Result<ExitStatus> {
         path: tool.files.iter().find_map(|file| found(file)),
     });
     let all_open = ports.iter().all(|port| port.may_open);
-    if talk.json {
-        talk.data(&serde_json::json!({ "ports": ports, "tools": tools }))?;
+    if console.json {
+        console.data(&serde_json::json!({ "ports": ports, "tools": tools }))?;
     } else {
-        talk.print(&text(&ports, &tools))?;
+        console.print(&text(&ports, &tools))?;
     }
     if !all_open {
-        talk.say(PERMISSION_REMEDY);
+        console.say(PERMISSION_REMEDY);
     }
     Ok(ExitStatus::answer(all_open))
 }

@@ -16,7 +16,7 @@
 //! `held` (name, and which value shows nothing there beside others of its effect, so that it is
 //! held).
 
-use super::{ExitStatus, Talk, input, show};
+use super::{Console, ExitStatus, input, show};
 use handstand::Result;
 use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free_parameters};
 use handstand::log::{LogRequest, expanded};
@@ -40,7 +40,7 @@ pub struct DriftArgs {
 }
 
 /// Fits each log, compares, prints.
-pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &DriftArgs, console: &Console) -> Result<ExitStatus> {
     let model = input::model(&args.model)?;
     let free = free_parameters(&model, &args.free)?;
     // A session is read by itself; that none shares rows with another, or is a copy, shows in all.
@@ -48,14 +48,14 @@ pub fn run(args: &DriftArgs, talk: &Talk) -> Result<ExitStatus> {
     let sessions = args.logs.iter().map(|log| {
         Ok(DriftSession {
             name: log.to_string(),
-            motions: input::motions(std::slice::from_ref(log), &model.log, talk)?,
+            motions: input::motions(std::slice::from_ref(log), &model.log, console)?,
         })
     });
     let sessions: Vec<DriftSession> = sessions.collect::<Result<_>>()?;
     let motions = sessions.iter().flat_map(|session| &session.motions);
     let horizon = args.run.of(&model, motions)?;
     let found = drift(&model, &free, &sessions, horizon);
-    talk.result(&serde_json::to_value(&found).unwrap_or_default(), || {
+    console.result(&serde_json::to_value(&found).unwrap_or_default(), || {
         said(&found)
     })?;
     Ok(ExitStatus::answer(sessions.len() - found.refused.len() > 1))

@@ -14,9 +14,9 @@
 //! `experiment`, `reference`, `parameters` (`key`, `unit`, `meaning`, `off`, `typical`, `bounds`),
 //! `confused_with` (`with`, `why`); one where one is meant, else a list.
 
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::Result;
-use handstand::effects::{EFFECTS, Effect, Found, listed, look_up};
+use handstand::effects::{EFFECTS, Effect, NameMatch, listed, look_up};
 use handstand::fitting::effect_named;
 use handstand::report::effect_page;
 
@@ -28,41 +28,41 @@ pub struct EffectsArgs {
 }
 
 /// Prints the table, the page, or the effects that may be meant.
-pub fn run(args: &EffectsArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &EffectsArgs, console: &Console) -> Result<ExitStatus> {
     let Some(name) = &args.name else {
-        infos(EFFECTS, talk, effect_page::overview)?;
-        if !talk.json {
-            talk.say("`handstand effects NAME` explains one of them");
+        infos(EFFECTS, console, effect_page::overview)?;
+        if !console.json {
+            console.say("`handstand effects NAME` explains one of them");
         }
         return Ok(ExitStatus::Done);
     };
     match look_up(name) {
-        Found::Several(several) => choice(
+        NameMatch::Several(several) => choice(
             &several,
             &format!("{} effects are called `{name}`", several.len()),
-            talk,
+            console,
         )?,
-        Found::Similar(similar) if similar.len() > 1 => choice(
+        NameMatch::Similar(similar) if similar.len() > 1 => choice(
             &similar,
             &format!(
                 "no effect is called `{name}`; {} speak of it",
                 similar.len()
             ),
-            talk,
+            console,
         )?,
         _ => {
             let effect = effect_named(name)?;
-            talk.result(effect.info(), || effect_page::page(effect))?;
+            console.result(effect.info(), || effect_page::page(effect))?;
         }
     }
     Ok(ExitStatus::Done)
 }
 
 /// Lists the effects that a word may mean.
-fn choice(effects: &[&'static dyn Effect], why: &str, talk: &Talk) -> Result<()> {
-    infos(effects, talk, || listed(effects).join("\n"))?;
-    if !talk.json {
-        talk.say(&format!(
+fn choice(effects: &[&'static dyn Effect], why: &str, console: &Console) -> Result<()> {
+    infos(effects, console, || listed(effects).join("\n"))?;
+    if !console.json {
+        console.say(&format!(
             "{why}; `handstand effects NAME` explains one of them"
         ));
     }
@@ -72,9 +72,9 @@ fn choice(effects: &[&'static dyn Effect], why: &str, talk: &Talk) -> Result<()>
 /// Descriptions for programs, or a text for people.
 fn infos(
     effects: &[&'static dyn Effect],
-    talk: &Talk,
+    console: &Console,
     text: impl FnOnce() -> String,
 ) -> Result<()> {
     let infos: Vec<_> = effects.iter().map(|effect| effect.info()).collect();
-    talk.result(&infos, text)
+    console.result(&infos, text)
 }

@@ -18,7 +18,7 @@
 //! `end_s`), `joints` (`servos`, `lowest_rad`, `highest_rad`, `fastest_rad_s`).
 
 use super::input::{positive, range};
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::experiment::excite::{
     EXCITATION_KINDS, Excitation, ExcitationKind, ExcitePlan, JointLimits, excite,
 };
@@ -113,7 +113,7 @@ impl ExciteArgs {
 }
 
 /// Writes the motions.
-pub fn run(args: &ExciteArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &ExciteArgs, console: &Console) -> Result<ExitStatus> {
     output::vacant(&args.file, args.force)?;
     let plan = args.plan()?;
     let excitation = excite(&plan)?;
@@ -127,7 +127,7 @@ pub fn run(args: &ExciteArgs, talk: &Talk) -> Result<ExitStatus> {
         "motions": excitation.motions,
         "joints": excitation.extents(),
     });
-    talk.result(&data, || text(args, &excitation))?;
+    console.result(&data, || text(args, &excitation))?;
     Ok(ExitStatus::Done)
 }
 

@@ -14,7 +14,7 @@
 //! (`before_rad`, `after_rad`, `floor_rad`, `held_out`), `horizon_s`, `converged`, `warnings`; or
 //! `refused`, `blind` and `mixed`.
 
-use super::{ExitStatus, Talk, input, show};
+use super::{Console, ExitStatus, input, show};
 use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
 use handstand::model::edit::set_bounds;
@@ -43,20 +43,20 @@ pub struct FitArgs {
 }
 
 /// Fits, writes, prints.
-pub fn run(args: &FitArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &FitArgs, console: &Console) -> Result<ExitStatus> {
     let text = bounded(args)?;
     let model = Model::parse(&text, &args.model)?;
     let free = free_parameters(&model, &args.free)?;
-    let split = args.fit.motions(&model, &args.logs, talk)?;
+    let split = args.fit.motions(&model, &args.logs, console)?;
     let horizon = args.fit.judging.run.horizon;
-    let refitted = refit(&model, &free, &split, horizon, &talk.progress());
+    let refitted = refit(&model, &free, &split, horizon, &console.progress());
     let refitted = match refitted {
         Ok(refitted) => refitted,
-        Err(why) => return refuse(&why, talk),
+        Err(why) => return refuse(&why, console),
     };
     let text = with_refitted(&text, &args.model, &model, &refitted, &split)?;
     let before = "for the model as it was";
-    write(&refitted, &text, &[], before, &args.fit, talk)
+    write(&refitted, &text, &[], before, &args.fit, console)
 }
 
 /// The model's text with the bounds that were asked for.
@@ -73,13 +73,13 @@ fn bounded(args: &FitArgs) -> Result<String> {
 }
 
 /// Says why there is no new model.
-pub fn refuse(why: &Undetermined, talk: &Talk) -> Result<ExitStatus> {
+pub fn refuse(why: &Undetermined, console: &Console) -> Result<ExitStatus> {
     let data = json!({
         "refused": why.to_string(),
         "blind": why.blind,
         "mixed": why.mixed,
     });
-    talk.result(&data, || show::undetermined(why))?;
+    console.result(&data, || show::undetermined(why))?;
     Ok(ExitStatus::Refused)
 }
 
@@ -90,19 +90,19 @@ pub fn write(
     added: &[String],
     before: &str,
     args: &input::RefitArgs,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<ExitStatus> {
     output::write_new(&args.output, text, args.force)?;
-    if talk.json {
+    if console.json {
         let mut data = refitted_json(refitted);
         data["model"] = json!(args.output.to_string_lossy());
         if !added.is_empty() {
             data["effects"] = json!(added);
         }
-        talk.data(&data)?;
+        console.data(&data)?;
     } else {
-        talk.print(&refitted_text(refitted, before))?;
-        talk.say(&format!("wrote {}", args.output.display()));
+        console.print(&refitted_text(refitted, before))?;
+        console.say(&format!("wrote {}", args.output.display()));
     }
     Ok(ExitStatus::Done)
 }

@@ -17,7 +17,7 @@
 //! `--json` prints `bytes`, `checksum`, `written`, `verify_said`, `starts_at_power_on`; with
 //! `--dry-run` or `--isp` `command` or less.
 
-use super::{ExitStatus, Talk, interrupt::Interrupt, port::Port};
+use super::{Console, ExitStatus, interrupt::Interrupt, port::Port};
 use handstand::link::boot_loader::{BootLoader, Image};
 use handstand::{Error, Result};
 use serde_json::json;
@@ -68,9 +68,9 @@ pub struct Loader {
 }
 
 /// Checks the image, then writes it.
-pub fn run(args: &FlashArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &FlashArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(programmer) = &args.isp {
-        return isp(args, programmer, talk);
+        return isp(args, programmer, console);
     }
     let image = if args.loader.any_program {
         Image::load_any(&args.image)?
@@ -84,12 +84,12 @@ pub fn run(args: &FlashArgs, talk: &Talk) -> Result<ExitStatus> {
         image.checksum()
     );
     if args.dry_run {
-        talk.say(&format!("{facts}; nothing was sent"));
-        return report(&image, None, false, talk);
+        console.say(&format!("{facts}; nothing was sent"));
+        return report(&image, None, false, console);
     }
-    talk.say(&facts);
-    let said = write(&image, &args.port, &args.loader, args.go, talk)?;
-    report(&image, Some(&said), !args.loader.no_app, talk)
+    console.say(&facts);
+    let said = write(&image, &args.port, &args.loader, args.go, console)?;
+    report(&image, Some(&said), !args.loader.no_app, console)
 }
 
 /// Writes an image through the boot loader, and starts it now if `go`; what the loader says to
@@ -97,34 +97,45 @@ pub fn run(args: &FlashArgs, talk: &Talk) -> Result<ExitStatus> {
 ///
 /// # Errors
 /// It does not answer, or received something else.
-pub fn write(image: &Image, port: &Port, how: &Loader, go: bool, talk: &Talk) -> Result<String> {
+pub fn write(
+    image: &Image,
+    port: &Port,
+    how: &Loader,
+    go: bool,
+    console: &Console,
+) -> Result<String> {
     let interrupt = Interrupt::listen();
     let link = port.open()?;
-    talk.say("Press the MODE button (reset) of the CM-5 now.");
+    console.say("Press the MODE button (reset) of the CM-5 now.");
     let patience = Duration::from_secs(how.wait);
     let pace = Duration::from_micros(how.pace_us);
     let mut loader = BootLoader::enter(link, pace, patience, || !interrupt.has_come())?;
     // A write that is interrupted leaves half a program: it must not start.
     loader.stay_at_power_on()?;
-    let bar = talk.bar(image.bytes().len() as u64);
+    let bar = console.bar(image.bytes().len() as u64);
     bar.set_message("bytes; do not switch off");
     loader.load(image, |sent| bar.set_position(sent as u64))?;
     drop(bar);
     let said = loader.verify()?;
-    talk.say(&format!("verify: the boot loader says `{said}`"));
+    console.say(&format!("verify: the boot loader says `{said}`"));
     if !how.no_app {
         loader.start_at_power_on()?;
     }
     if go {
         loader.go()?;
     }
-    talk.say("Written: size and checksum are those of the file.");
+    console.say("Written: size and checksum are those of the file.");
     Ok(said)
 }
 
-fn report(image: &Image, said: Option<&str>, starts: bool, talk: &Talk) -> Result<ExitStatus> {
-    if talk.json {
-        talk.data(&json!({
+fn report(
+    image: &Image,
+    said: Option<&str>,
+    starts: bool,
+    console: &Console,
+) -> Result<ExitStatus> {
+    if console.json {
+        console.data(&json!({
             "bytes": image.bytes().len(),
             "checksum": image.checksum(),
             "written": said.is_some(),
@@ -148,7 +159,7 @@ fn format_of(path: &Path) -> Result<&'static str> {
     }
 }
 
-fn isp(args: &FlashArgs, programmer: &str, talk: &Talk) -> Result<ExitStatus> {
+fn isp(args: &FlashArgs, programmer: &str, console: &Console) -> Result<ExitStatus> {
     let kind = format_of(&args.image)?;
     if let Err(error) = std::fs::metadata(&args.image) {
         return Err(Error::file(&args.image, "read", error));
@@ -157,12 +168,12 @@ fn isp(args: &FlashArgs, programmer: &str, talk: &Talk) -> Result<ExitStatus> {
     // Fuses and lock bits are never written.
     let words = ["-p", "m128", "-c", programmer, "-U", &target];
     let line = format!("avrdude {}", words.join(" "));
-    talk.say(
+    console.say(
         "This erases the whole chip, the CM-5's boot loader included: afterwards only a \
          programmer can write it.",
     );
     if args.dry_run {
-        talk.say(&format!("{line}; not run"));
+        console.say(&format!("{line}; not run"));
     } else {
         agreed(args.yes, "Erase the boot loader?")?;
         let status = Command::new("avrdude")
@@ -181,8 +192,8 @@ fn isp(args: &FlashArgs, programmer: &str, talk: &Talk) -> Result<ExitStatus> {
             ));
         }
     }
-    if talk.json {
-        talk.data(&json!({ "command": line, "run": !args.dry_run }))?;
+    if console.json {
+        console.data(&json!({ "command": line, "run": !args.dry_run }))?;
     }
     Ok(ExitStatus::Done)
 }

@@ -22,7 +22,7 @@
 //! script for MATLAB and Octave.
 
 use super::weight_arg::{WeightArg, weight};
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::model::Model;
 use handstand::report::{
     GainsReport, gains_json, gains_page, margins_text, tuned_text, verification_text, with_margins,
@@ -154,23 +154,23 @@ fn c_name(text: &str) -> Result<String, String> {
 }
 
 /// Designs, prints, writes the files.
-pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
-    let (part, mut request, made) = requested(args, talk).map_err(of_options)?;
+pub fn run(args: &GainsArgs, console: &Console) -> Result<ExitStatus> {
+    let (part, mut request, made) = requested(args, console).map_err(of_options)?;
     let whole = Model::load(&args.model)?;
-    let tuned = tuned(args, &whole, &part, &request, talk)?;
+    let tuned = tuned(args, &whole, &part, &request, console)?;
     if let Some(tuned) = &tuned {
         request = tuned.request(&request);
     }
     let design = match Design::of(&part, &request) {
         // Gains that exist and lose their stability in fixed point are the answer no.
         Err(error @ DesignError::UnstableWhenRounded { .. }) => {
-            talk.error(error.into());
+            console.error(error.into());
             return Ok(ExitStatus::Refused);
         }
         design => design.map_err(|error| of_options(error.into()))?,
     };
     let left_out = left_out(&whole, &part, &design);
-    let bar = talk.bar(verification_steps(&left_out) as u64);
+    let bar = console.bar(verification_steps(&left_out) as u64);
     bar.set_message("simulations of the loop");
     let verified = verify(&whole, &design, &request, &left_out, &|| bar.inc(1))?;
     drop(bar);
@@ -183,7 +183,7 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
     if let Some(tuned) = &tuned {
         data["tuned"] = json!(tuned);
     }
-    talk.result(&data, || {
+    console.result(&data, || {
         format!(
             "{}\n\n{}{}\n{}",
             export::text(&design).trim_end(),
@@ -194,7 +194,7 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
             verification_text(&verified, whole.slides())
         )
     })?;
-    write(args, &design, &made, &data, talk)?;
+    write(args, &design, &made, &data, console)?;
     if let Some(file) = &args.report {
         let page = gains_page(&GainsReport {
             model: &whole,
@@ -204,12 +204,12 @@ pub fn run(args: &GainsArgs, talk: &Talk) -> Result<ExitStatus> {
             verified: &verified,
             made: &made,
         })?;
-        talk.write(file, &page, args.force)?;
+        console.write(file, &page, args.force)?;
     }
     let estimation = design.estimator.as_ref();
     let is_linear = estimation.is_none_or(|it| it.beyond(&design).is_none());
     if !verified.stabilised && !verified.held && !args.tune && !args.continuous {
-        talk.say("--tune looks for weights that hold it");
+        console.say("--tune looks for weights that hold it");
     }
     Ok(ExitStatus::answer(verified.stabilised && is_linear))
 }
@@ -220,16 +220,16 @@ fn tuned(
     whole: &Model,
     part: &Model,
     request: &Request,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<Option<Tuned>> {
     if !args.tune {
         return Ok(None);
     }
-    let bar = talk.bar(TUNING_STEPS as u64);
+    let bar = console.bar(TUNING_STEPS as u64);
     bar.set_message("weights tried");
     let tuned = tune(whole, part, request, &|| bar.inc(1)).map_err(of_options)?;
     drop(bar);
-    talk.say(&tuned_text(&tuned));
+    console.say(&tuned_text(&tuned));
     Ok(Some(tuned))
 }
 
@@ -296,9 +296,9 @@ pub(super) fn write(
     design: &Design,
     made: &Provenance,
     data: &serde_json::Value,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<()> {
-    let put = |file: &Path, text: &str| talk.write(file, text, args.force);
+    let put = |file: &Path, text: &str| console.write(file, text, args.force);
     if let Some(fixed) = &design.fixed {
         if let Some(file) = &args.rust {
             put(file, &export::rust_file(design, fixed, made))?;

@@ -15,7 +15,7 @@
 //! `docs/json.md`. Exit code 1: no model could be fitted.
 
 use super::servo_columns::{ChosenColumns, ServoColumns};
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::log::LogRequest;
 use handstand::motion::Motion;
 use handstand::sysid::{
@@ -72,7 +72,7 @@ struct Data {
 }
 
 /// Fits, selects, prints.
-pub fn run(args: &IdentifyArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitStatus> {
     let data = data(args)?;
     let mut grid: Vec<Structure> = args.orders.iter().flat_map(|g| g.0.clone()).collect();
     if grid.is_empty() {
@@ -80,11 +80,11 @@ pub fn run(args: &IdentifyArgs, talk: &Talk) -> Result<ExitStatus> {
             grid.extend(structures(text)?);
         }
     }
-    let bar = talk.bar(grid.len() as u64);
+    let bar = console.bar(grid.len() as u64);
     let trials = try_all(&grid, &data.training, &data.validation, &|| bar.inc(1));
     drop(bar);
     let chosen = select(&trials, &data.validation);
-    talk.result(&found_json(&data, &trials, chosen), || {
+    console.result(&found_json(&data, &trials, chosen), || {
         text::text(&data, &trials, chosen)
     })?;
     Ok(ExitStatus::answer(chosen.is_some()))

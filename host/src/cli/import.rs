@@ -16,7 +16,7 @@
 //! (or null), `text` (null where a file was written), `joints`, `not_carried` and `notes` (`part`,
 //! `name`, `line`, `why`).
 
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::model::import::{ImportPlan, import};
 use handstand::output::vacant;
@@ -44,7 +44,7 @@ pub struct ImportArgs {
 }
 
 /// Imports, and lists what is not carried.
-pub fn run(args: &ImportArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
         vacant(file, args.force)?;
     }
@@ -53,15 +53,15 @@ pub fn run(args: &ImportArgs, talk: &Talk) -> Result<ExitStatus> {
         driven: args.driven,
     };
     let imported = import(&input::text(&args.robot)?, &args.robot, &plan)?;
-    talk.say(&format!("joints: {}", imported.joints.join(", ")));
+    console.say(&format!("joints: {}", imported.joints.join(", ")));
     for note in &imported.notes {
-        talk.say(&format!("note: {note}"));
+        console.say(&format!("note: {note}"));
     }
     for part in &imported.left_out {
-        talk.say(&format!("not carried: {part}"));
+        console.say(&format!("not carried: {part}"));
     }
     if let Some(file) = &args.output {
-        talk.write(file, &imported.toml, args.force)?;
+        console.write(file, &imported.toml, args.force)?;
     }
     let written = args.output.is_some();
     let data = json!({
@@ -72,10 +72,10 @@ pub fn run(args: &ImportArgs, talk: &Talk) -> Result<ExitStatus> {
         "not_carried": imported.left_out,
         "notes": imported.notes,
     });
-    if talk.json {
-        talk.data(&data)?;
+    if console.json {
+        console.data(&data)?;
     } else if !written {
-        talk.print(&imported.toml)?;
+        console.print(&imported.toml)?;
     }
     Ok(ExitStatus::Done)
 }

@@ -15,7 +15,7 @@
 //! where a file was written), `guesses` (`what`, `guess`, `why`) and `values` (`path`, `value`,
 //! `low` and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`).
 
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::first_model::estimate;
 use handstand::fitting::StopSwitch;
 use handstand::log::init::Draft;
@@ -59,7 +59,7 @@ pub struct InitArgs {
 }
 
 /// Guesses, asks, writes.
-pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &InitArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
         vacant(file, args.force)?;
     }
@@ -73,25 +73,25 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
         return Err(no_input(args, drive, &log));
     }
     for guess in &draft.guesses {
-        talk.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
+        console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
     }
     answer(args, &mut draft)?;
     if std::io::stdin().is_terminal() && std::io::stderr().is_terminal() {
         ask(args, &mut draft)?;
     }
     let said = draft.guesses.len();
-    let progress = talk.progress();
+    let progress = console.progress();
     estimate(&mut draft, &args.log, &StopSwitch::default(), &progress)?;
     // Nothing is printed beside the bar.
     drop(progress);
     for guess in draft.guesses.iter().skip(said) {
-        talk.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
+        console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
     }
     let text = draft.toml()?;
     if let Some(file) = &args.output {
-        talk.write(file, &text, args.force)?;
+        console.write(file, &text, args.force)?;
         let (model, log) = (file.display(), &args.log);
-        talk.say(&format!("next: handstand log check {model} {log}"));
+        console.say(&format!("next: handstand log check {model} {log}"));
     }
     let written = args.output.is_some();
     let data = json!({
@@ -100,10 +100,10 @@ pub fn run(args: &InitArgs, talk: &Talk) -> Result<ExitStatus> {
         "guesses": draft.guesses,
         "values": draft.values()?,
     });
-    if talk.json {
-        talk.data(&data)?;
+    if console.json {
+        console.data(&data)?;
     } else if !written {
-        talk.print(&text)?;
+        console.print(&text)?;
     }
     Ok(ExitStatus::Done)
 }

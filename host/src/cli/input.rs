@@ -1,6 +1,6 @@
 //! Arguments that several commands take.
 
-use super::Talk;
+use super::Console;
 use handstand::compare::ClosedLoopComparison;
 use handstand::error::Place;
 use handstand::fitting::{Horizon, free_parameters};
@@ -102,11 +102,11 @@ impl RefitArgs {
     ///
     /// # Errors
     /// As [`vacant`], [`LogSet::read`] and [`RunLength::of`].
-    pub fn motions(&self, model: &Model, logs: &[LogRequest], talk: &Talk) -> Result<Split> {
+    pub fn motions(&self, model: &Model, logs: &[LogRequest], console: &Console) -> Result<Split> {
         vacant(&self.output, self.force)?;
         let logs = log_set(logs, &self.judging.holdout);
         let (split, findings) = logs.read_with_findings(&model.log)?;
-        warn(&findings, talk);
+        warn(&findings, console);
         let motions = split.training.iter().chain(&split.held_out);
         self.judging.run.of(model, motions)?;
         Ok(split)
@@ -117,16 +117,20 @@ impl RefitArgs {
 ///
 /// # Errors
 /// As [`read_with_findings`].
-pub fn motions(logs: &[LogRequest], columns: &LogColumns, talk: &Talk) -> Result<Vec<Motion>> {
+pub fn motions(
+    logs: &[LogRequest],
+    columns: &LogColumns,
+    console: &Console,
+) -> Result<Vec<Motion>> {
     let (motions, findings) = read_with_findings(logs, columns)?;
-    warn(&findings, talk);
+    warn(&findings, console);
     Ok(motions)
 }
 
 /// Says what is left out of logs.
-pub fn warn(findings: &[LogFinding], talk: &Talk) {
+pub fn warn(findings: &[LogFinding], console: &Console) {
     for finding in findings {
-        talk.say(&finding.to_string());
+        console.say(&finding.to_string());
     }
 }
 

@@ -28,8 +28,8 @@
 
 use super::deploy::board::BoardArgs;
 use super::port::{Ids, Port, id_list};
-use super::{ExitStatus, Talk, input};
-use handstand::lab::{Given, Lab, LabOptions, RobotAccess};
+use super::{Console, ExitStatus, input};
+use handstand::lab::{Lab, LabOptions, ProjectFiles, RobotAccess};
 use handstand::log::LogRequest;
 use handstand::{Error, Result};
 use serde_json::json;
@@ -93,29 +93,29 @@ impl LabRobotArgs {
 }
 
 /// Serves until it is ended.
-pub fn run(args: &LabArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &LabArgs, console: &Console) -> Result<ExitStatus> {
     let folder = match &args.session {
         Some(folder) => folder.clone(),
         None => state_folder()?,
     };
     if args.no_browser {
-        talk.say("no browser is opened unless --open is given: --no-browser can be left out");
+        console.say("no browser is opened unless --open is given: --no-browser can be left out");
     }
     let lab = Lab::bind(LabOptions {
-        given: Given::of(&args.files)?,
+        given: ProjectFiles::of(&args.files)?,
         folder,
         port: args.port,
         robot: args.robot.access()?,
     })?;
     let address = lab.address();
     let data = json!({ "address": address, "session": lab.folder().to_string_lossy() });
-    talk.result(&data, || address.clone())?;
-    talk.say(&format!(
+    console.result(&data, || address.clone())?;
+    console.say(&format!(
         "sessions are kept in {}; Ctrl-C ends the lab",
         lab.folder().display()
     ));
     if args.open {
-        open(&address, talk);
+        open(&address, console);
     }
     lab.serve()?;
     Ok(ExitStatus::Done)
@@ -139,7 +139,7 @@ fn state_folder() -> Result<PathBuf> {
 }
 
 /// Asks the system to show the address. Where it cannot, the address stands on stdout.
-fn open(address: &str, talk: &Talk) {
+fn open(address: &str, console: &Console) {
     let program = if cfg!(target_os = "macos") {
         "open"
     } else {
@@ -159,7 +159,7 @@ fn open(address: &str, talk: &Talk) {
         .stderr(Stdio::null())
         .spawn();
     if let Err(why) = begun {
-        talk.say(&format!(
+        console.say(&format!(
             "no browser was opened ({why}): open the address yourself"
         ));
     }

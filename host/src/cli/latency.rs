@@ -14,7 +14,7 @@
 //! measured time with `min`, `median`, `p99`, `max`.
 
 use super::robot::RobotArgs;
-use super::{ExitStatus, Talk, interrupt::Interrupt};
+use super::{Console, ExitStatus, interrupt::Interrupt};
 use handstand::link::Protocol;
 use handstand::link::record::{Adapter, GroupAdapter, LatencyBudget, Quantiles, RoundTrip, Stream};
 use handstand::{Error, Result};
@@ -34,7 +34,7 @@ pub struct LatencyArgs {
 }
 
 /// Measures, judges.
-pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &LatencyArgs, console: &Console) -> Result<ExitStatus> {
     if !(0.1..=10_000.0).contains(&args.period_ms) {
         return Err(Error::usage(
             format!("--period-ms {} is no sampling time", args.period_ms),
@@ -42,14 +42,14 @@ pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
         ));
     }
     let interrupt = Interrupt::listen();
-    let bar = talk.bar(args.rounds);
+    let bar = console.bar(args.rounds);
     let goes_on = || {
         bar.inc(1);
         !interrupt.has_come()
     };
     let (rounds, period_us) = (args.rounds, args.period_ms * 1e3);
     let mut link = args.robot.port.open()?;
-    let ids = args.robot.chosen(&mut link, talk)?;
+    let ids = args.robot.chosen(&mut link, console)?;
     let ids = &ids[..];
     let budget = if args.robot.stream {
         let mut stream = Stream::new(link, ids)?;
@@ -73,7 +73,7 @@ pub fn run(args: &LatencyArgs, talk: &Talk) -> Result<ExitStatus> {
     };
     drop(bar);
     let answer = budget?;
-    talk.result(&answer, || text(&answer, ids.len(), args))?;
+    console.result(&answer, || text(&answer, ids.len(), args))?;
     Ok(ExitStatus::answer(answer.fits))
 }
 

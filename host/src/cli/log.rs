@@ -18,8 +18,8 @@
 mod merge;
 mod plot;
 
+use super::Console;
 use super::ExitStatus;
-use super::Talk;
 use super::input;
 use handstand::Result;
 use handstand::diagnose::conventions::{self, ModelFile};
@@ -39,11 +39,11 @@ pub enum LogCommand {
 }
 
 /// Does it.
-pub fn run(command: &LogCommand, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(command: &LogCommand, console: &Console) -> Result<ExitStatus> {
     match command {
-        LogCommand::Check(args) => check(args, talk),
-        LogCommand::Plot(args) => plot::run(args, talk),
-        LogCommand::Merge(args) => merge::run(args, talk),
+        LogCommand::Check(args) => check(args, console),
+        LogCommand::Plot(args) => plot::run(args, console),
+        LogCommand::Merge(args) => merge::run(args, console),
     }
 }
 
@@ -58,9 +58,9 @@ pub struct LogCheckArgs {
 }
 
 /// Prints the findings.
-fn check(args: &LogCheckArgs, talk: &Talk) -> Result<ExitStatus> {
+fn check(args: &LogCheckArgs, console: &Console) -> Result<ExitStatus> {
     let findings = findings(&args.logs, &args.model)?;
-    talk.result(&log_check_json(&findings), || log_check_text(&findings))?;
+    console.result(&log_check_json(&findings), || log_check_text(&findings))?;
     Ok(ExitStatus::answer(!refused(&findings)))
 }
 

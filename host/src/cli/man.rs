@@ -7,7 +7,7 @@
 //!
 //! `--json` prints the names of the files, `pages`.
 
-use super::{Cli, ExitStatus, Talk};
+use super::{Cli, Console, ExitStatus};
 use clap::{Command, CommandFactory as _};
 use clap_mangen::Man;
 use handstand::output::write_new;
@@ -25,17 +25,17 @@ pub struct ManArgs {
 }
 
 /// Writes the pages.
-pub fn run(args: &ManArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &ManArgs, console: &Console) -> Result<ExitStatus> {
     let folder = &args.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::file(folder, "make", e))?;
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
     let mut pages = Vec::new();
     write_pages(command, folder, args.force, &mut pages)?;
-    if talk.json {
-        talk.data(&serde_json::json!({ "pages": pages }))?
+    if console.json {
+        console.data(&serde_json::json!({ "pages": pages }))?
     } else {
-        talk.say(&format!("{} pages in {}", pages.len(), folder.display()))
+        console.say(&format!("{} pages in {}", pages.len(), folder.display()))
     }
     Ok(ExitStatus::Done)
 }

@@ -16,7 +16,7 @@
 
 use super::servo_columns::ServoColumns;
 use super::show::{self, known};
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::error::Reason;
 use handstand::log::{LogRequest, read};
 use handstand::output::number::exact;
@@ -47,10 +47,10 @@ pub struct MapArgs {
 }
 
 /// Fits and prints.
-pub fn run(command: &MapCommand, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(command: &MapCommand, console: &Console) -> Result<ExitStatus> {
     match command {
-        MapCommand::DeadZone(args) => dead_zone(args, talk),
-        MapCommand::Supply(args) => supply(args, talk),
+        MapCommand::DeadZone(args) => dead_zone(args, console),
+        MapCommand::Supply(args) => supply(args, console),
     }
 }
 
@@ -68,11 +68,11 @@ fn measured(args: &MapArgs) -> Result<(Vec<BlockMean>, &'static str, &'static st
     Ok((blocks, chosen.input_unit, chosen.output_unit))
 }
 
-fn dead_zone(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
+fn dead_zone(args: &MapArgs, console: &Console) -> Result<ExitStatus> {
     let (blocks, input_unit, output_unit) = measured(args)?;
     let map = match DeadZoneMap::fit(&blocks) {
         Ok(map) => map,
-        Err(why) => return refused(&why, talk),
+        Err(why) => return refused(&why, console),
     };
     let data = json!({
         "input_unit": input_unit,
@@ -81,7 +81,7 @@ fn dead_zone(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
         "down": map.down,
         "inverse": map.inverse(),
     });
-    talk.result(&data, || dead_zone_text(&map, input_unit, output_unit))?;
+    console.result(&data, || dead_zone_text(&map, input_unit, output_unit))?;
     Ok(ExitStatus::Done)
 }
 
@@ -113,7 +113,7 @@ fn dead_zone_text(map: &DeadZoneMap, input_unit: &str, output_unit: &str) -> Str
     )
 }
 
-fn supply(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
+fn supply(args: &MapArgs, console: &Console) -> Result<ExitStatus> {
     let (blocks, input_unit, output_unit) = measured(args)?;
     if input_unit != output_unit {
         return Err(Error::usage(
@@ -124,9 +124,9 @@ fn supply(args: &MapArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     let line = match SupplyLine::fit(&blocks) {
         Ok(line) => line,
-        Err(why) => return refused(&why, talk),
+        Err(why) => return refused(&why, console),
     };
-    talk.result(&line, || supply_text(&line))?;
+    console.result(&line, || supply_text(&line))?;
     Ok(ExitStatus::Done)
 }
 
@@ -156,8 +156,8 @@ fn supply_text(line: &SupplyLine) -> String {
     )
 }
 
-fn refused(why: &dyn Reason, talk: &Talk) -> Result<ExitStatus> {
+fn refused(why: &dyn Reason, console: &Console) -> Result<ExitStatus> {
     let data = json!({ "refused": why.to_string(), "remedy": why.remedy() });
-    talk.result(&data, || format!("refused: {why} ({})", why.remedy()))?;
+    console.result(&data, || format!("refused: {why} ({})", why.remedy()))?;
     Ok(ExitStatus::Refused)
 }

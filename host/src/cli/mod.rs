@@ -11,6 +11,7 @@ mod bus;
 mod challenge;
 mod compare;
 mod completions;
+mod console;
 mod controllers;
 mod delays;
 mod demo;
@@ -51,15 +52,14 @@ mod servo_columns;
 mod show;
 mod simulated;
 mod study;
-mod talk;
 mod view;
 mod virtual_robot;
 mod weight_arg;
 mod welcome;
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use console::Console;
 use handstand::Result;
-use talk::Talk;
 
 /// Exit code of a bug.
 pub const BUG: u8 = 101;
@@ -93,16 +93,16 @@ impl Cli {
     ///
     /// # Errors
     /// As [`Command::run`].
-    pub fn run(&self, talk: &Talk) -> Result<ExitStatus> {
+    pub fn run(&self, console: &Console) -> Result<ExitStatus> {
         match &self.command {
-            Some(command) => command.run(talk),
-            None => welcome::run(talk),
+            Some(command) => command.run(console),
+            None => welcome::run(console),
         }
     }
 
     /// Where this run's output goes.
-    pub fn talk(&self) -> Talk {
-        Talk::new(self.json, self.quiet)
+    pub fn console(&self) -> Console {
+        Console::new(self.json, self.quiet)
     }
 }
 
@@ -193,44 +193,44 @@ impl Command {
     ///
     /// # Errors
     /// Requests that make no sense, files that cannot be read or are refused.
-    pub fn run(&self, talk: &Talk) -> Result<ExitStatus> {
+    pub fn run(&self, console: &Console) -> Result<ExitStatus> {
         match self {
-            Command::Init(args) => init::run(args, talk),
-            Command::Compare(args) => compare::run(args, talk),
-            Command::Diagnose(args) => diagnose::run(args, talk),
-            Command::Next(args) => next::run(args, talk),
-            Command::Effects(args) => effects::run(args, talk),
-            Command::Log(command) => log::run(command, talk),
-            Command::Fit(args) => fit::run(args, talk),
-            Command::Drift(args) => drift::run(args, talk),
-            Command::Add(args) => add::run(args, talk),
-            Command::Gains(args) => deploy::gains(args, talk),
-            Command::Study(command) => study::run(command, talk),
-            Command::Import(args) => import::run(args, talk),
-            Command::Model(model::ModelCommand::Export(args)) => model::export(args, talk),
-            Command::Identify(args) => identify::run(args, talk),
-            Command::Map(command) => map::run(command, talk),
-            Command::View(args) => view::run(args, talk),
-            Command::Paper(args) => paper::run(args, talk),
-            Command::Challenge(command) => challenge::run(command, talk),
-            Command::Controllers(args) => controllers::run(args, talk),
-            Command::Delays(args) => delays::run(args, talk),
-            Command::Robust(args) => robust::run(args, talk),
-            Command::Demo(args) => demo::run(args, talk),
+            Command::Init(args) => init::run(args, console),
+            Command::Compare(args) => compare::run(args, console),
+            Command::Diagnose(args) => diagnose::run(args, console),
+            Command::Next(args) => next::run(args, console),
+            Command::Effects(args) => effects::run(args, console),
+            Command::Log(command) => log::run(command, console),
+            Command::Fit(args) => fit::run(args, console),
+            Command::Drift(args) => drift::run(args, console),
+            Command::Add(args) => add::run(args, console),
+            Command::Gains(args) => deploy::gains(args, console),
+            Command::Study(command) => study::run(command, console),
+            Command::Import(args) => import::run(args, console),
+            Command::Model(model::ModelCommand::Export(args)) => model::export(args, console),
+            Command::Identify(args) => identify::run(args, console),
+            Command::Map(command) => map::run(command, console),
+            Command::View(args) => view::run(args, console),
+            Command::Paper(args) => paper::run(args, console),
+            Command::Challenge(command) => challenge::run(command, console),
+            Command::Controllers(args) => controllers::run(args, console),
+            Command::Delays(args) => delays::run(args, console),
+            Command::Robust(args) => robust::run(args, console),
+            Command::Demo(args) => demo::run(args, console),
             #[cfg(feature = "lab")]
-            Command::Lab(args) => lab::run(args, talk),
-            Command::Bus(command) => bus::run(command, talk),
-            Command::Excite(args) => excite::run(args, talk),
-            Command::Record(args) => record::run(args, talk),
-            Command::Replay(args) => replay::run(args, talk),
-            Command::Balance(args) => balance::run(args, talk),
-            Command::Latency(args) => latency::run(args, talk),
-            Command::Deploy(args) => deploy::run(args, talk),
-            Command::Flash(args) => flash::run(args, talk),
-            Command::Virtual(args) => virtual_robot::run(args, talk),
-            Command::Doctor(args) => doctor::run(args, talk),
-            Command::Completions(args) => completions::run(args, talk),
-            Command::Man(args) => man::run(args, talk),
+            Command::Lab(args) => lab::run(args, console),
+            Command::Bus(command) => bus::run(command, console),
+            Command::Excite(args) => excite::run(args, console),
+            Command::Record(args) => record::run(args, console),
+            Command::Replay(args) => replay::run(args, console),
+            Command::Balance(args) => balance::run(args, console),
+            Command::Latency(args) => latency::run(args, console),
+            Command::Deploy(args) => deploy::run(args, console),
+            Command::Flash(args) => flash::run(args, console),
+            Command::Virtual(args) => virtual_robot::run(args, console),
+            Command::Doctor(args) => doctor::run(args, console),
+            Command::Completions(args) => completions::run(args, console),
+            Command::Man(args) => man::run(args, console),
         }
     }
 }

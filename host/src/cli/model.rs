@@ -10,7 +10,7 @@
 //! Without `-o` the file's text goes to stdout. `--json` prints `format`, `file` (or null), `text`
 //! (null where a file was written) and `not_carried` (`part`, `joint`, `why`).
 
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::model::export::{Exported, mjcf, urdf};
 use handstand::output::vacant;
@@ -50,7 +50,7 @@ pub struct ModelExportArgs {
 }
 
 /// Exports, and lists what is not carried.
-pub fn export(args: &ModelExportArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn export(args: &ModelExportArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
         vacant(file, args.force)?;
     }
@@ -61,13 +61,13 @@ pub fn export(args: &ModelExportArgs, talk: &Talk) -> Result<ExitStatus> {
     };
     let Exported { text, not_carried } = exported;
     if let Some(file) = &args.output {
-        talk.write(file, &text, args.force)?;
+        console.write(file, &text, args.force)?;
     }
     for missing in &not_carried {
         let joint = missing
             .joint
             .map_or(String::new(), |joint| format!(" of joint {joint}"));
-        talk.say(&format!(
+        console.say(&format!(
             "not carried: {}{joint} ({})",
             missing.part, missing.why
         ));
@@ -79,10 +79,10 @@ pub fn export(args: &ModelExportArgs, talk: &Talk) -> Result<ExitStatus> {
         "text": (!written).then_some(&text),
         "not_carried": not_carried,
     });
-    if talk.json {
-        talk.data(&data)?;
+    if console.json {
+        console.data(&data)?;
     } else if !written {
-        talk.print(&text)?;
+        console.print(&text)?;
     }
     Ok(ExitStatus::Done)
 }

@@ -21,7 +21,7 @@
 //! code 1 where nothing within the limits helps. The keys of `--json` are in `docs/json.md`.
 
 use super::input::{self, positive};
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, Verdict, diagnose_logs};
 use handstand::experiment::{
@@ -97,7 +97,7 @@ fn criterion(text: &str) -> Result<Criterion, String> {
 }
 
 /// Proposes, prints, writes the motion.
-pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &NextArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
         output::vacant(file, args.force)?;
     }
@@ -108,7 +108,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));
     let logs = input::log_set(&args.logs, &args.judging.holdout);
-    let motions = input::motions(&logs.all(), &model.log, talk)?;
+    let motions = input::motions(&logs.all(), &model.log, console)?;
     let horizon = args.judging.run.of(&model, &motions)?;
     let options = ProposeOptions {
         limits: args.limits(
@@ -121,7 +121,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
     };
     let (proposal, diagnosis) = match args.value.as_slice() {
         [] => {
-            let diagnosis = args.diagnosed(&model, &logs, talk)?;
+            let diagnosis = args.diagnosed(&model, &logs, console)?;
             let proposal = match diagnosis.verdict {
                 Verdict::Unfit => None,
                 _ => Some(propose(&model, &diagnosis, motions, &options)?),
@@ -154,7 +154,7 @@ pub fn run(args: &NextArgs, talk: &Talk) -> Result<ExitStatus> {
         "next": next_steps(diagnosis, proposal, &follow_up),
         "replayable": follow_up.replayable,
     });
-    talk.result(&data, || proposal_text(diagnosis, proposal, &follow_up))?;
+    console.result(&data, || proposal_text(diagnosis, proposal, &follow_up))?;
     Ok(ExitStatus::answer(helps))
 }
 
@@ -179,7 +179,7 @@ impl NextArgs {
         }
     }
 
-    fn diagnosed(&self, model: &Model, logs: &LogSet, talk: &Talk) -> Result<Diagnosis> {
+    fn diagnosed(&self, model: &Model, logs: &LogSet, console: &Console) -> Result<Diagnosis> {
         let options = DiagnoseOptions {
             without: effect_ids(&self.without)?,
             known: input::known(model, &self.known)?,
@@ -192,7 +192,7 @@ impl NextArgs {
             path: &self.model,
             text: &text,
         };
-        let found = diagnose_logs(model, file, logs, &options, &talk.progress())?;
+        let found = diagnose_logs(model, file, logs, &options, &console.progress())?;
         Ok(found.diagnosis)
     }
 

@@ -1,6 +1,6 @@
 //! Pages: what they were made from, and writing them.
 
-use super::Talk;
+use super::Console;
 use handstand::motion::Split;
 use handstand::report::{HashedModel, ReportProvenance, file_name, file_names};
 use handstand::{Error, Result, output};
@@ -41,9 +41,9 @@ impl PageFile {
     ///
     /// # Errors
     /// Those of `page`, and as [`output::write_new`].
-    pub fn write(&self, page: impl FnOnce() -> Result<String>, talk: &Talk) -> Result<()> {
+    pub fn write(&self, page: impl FnOnce() -> Result<String>, console: &Console) -> Result<()> {
         match &self.file {
-            Some(file) => talk.write(file, &page()?, self.force),
+            Some(file) => console.write(file, &page()?, self.force),
             None => Ok(()),
         }
     }
@@ -53,11 +53,15 @@ impl PageFile {
 ///
 /// # Errors
 /// A model file that cannot be read again.
-pub fn provenance(models: &[&PathBuf], split: &Split, talk: &Talk) -> Result<ReportProvenance> {
+pub fn provenance(
+    models: &[&PathBuf],
+    split: &Split,
+    console: &Console,
+) -> Result<ReportProvenance> {
     let named = models.iter().zip(file_names(models));
     let model_files: Result<Vec<HashedModel>> =
         named.map(|(file, name)| hashed_as(name, file)).collect();
-    Ok(ReportProvenance::new(model_files?, split, &talk.command))
+    Ok(ReportProvenance::new(model_files?, split, &console.command))
 }
 
 /// Name and hash of a model file.

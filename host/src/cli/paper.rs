@@ -14,7 +14,7 @@
 //! with `--findings` or `--report` also `figures` and `findings` (`docs/json.md`).
 
 use super::page::PageFile;
-use super::{ExitStatus, Talk, show};
+use super::{Console, ExitStatus, show};
 use handstand::Result;
 use handstand::output::table::TableColumn;
 use handstand::paper::{
@@ -33,10 +33,10 @@ pub struct PaperArgs {
 }
 
 /// Computes, prints, writes the page.
-pub fn run(args: &PaperArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &PaperArgs, console: &Console) -> Result<ExitStatus> {
     args.page.vacant()?;
     let whole = if args.findings || args.page.is_wanted() {
-        Some(worked(talk)?)
+        Some(worked(console)?)
     } else {
         None
     };
@@ -47,21 +47,21 @@ pub fn run(args: &PaperArgs, talk: &Talk) -> Result<ExitStatus> {
             (check(&computed), computed)
         }
     };
-    talk.result(&data(&rows, &computed, whole.as_ref()), || {
+    console.result(&data(&rows, &computed, whole.as_ref()), || {
         let mut parts = vec![numbers(&rows), follows(&computed)];
         parts.extend(whole.as_ref().filter(|_| args.findings).map(judged));
         parts.join("\n\n")
     })?;
     if let Some(study) = &whole {
-        let page = || Ok(html(study, &talk.command));
-        args.page.write(page, talk)?;
+        let page = || Ok(html(study, &console.command));
+        args.page.write(page, console)?;
     }
     let differs = rows.iter().any(|row| row.verdict == Agreement::Differs);
     Ok(ExitStatus::answer(!differs))
 }
 
-fn worked(talk: &Talk) -> Result<Reproduction> {
-    let bar = talk.bar(STEPS);
+fn worked(console: &Console) -> Result<Reproduction> {
+    let bar = console.bar(STEPS);
     reproduce(&|what| {
         bar.set_message(what.to_string());
         bar.inc(1);

@@ -1,7 +1,7 @@
 //! The port of a command: a serial one, or a simulated one.
 
 use super::bus::garbled_words;
-use super::{Talk, simulated};
+use super::{Console, simulated};
 use handstand::deploy::balance::AttitudeSource;
 use handstand::link::{Answering, Protocol, Serial, SerialLink, Servos, Tap, id_ranges, ports};
 use handstand::{Error, Result};
@@ -153,14 +153,14 @@ pub const DEFAULT_IDS: [u8; 18] = [
 pub fn chosen(
     given: Option<&Ids>,
     ask: impl FnOnce() -> Result<Answering>,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<Vec<u8>> {
     if let Some(Ids(ids)) = given {
         return Ok(ids.clone());
     }
     let found = ask()?;
     let ids = found.ids();
-    say_found(&found, talk);
+    say_found(&found, console);
     if ids.is_empty() {
         return Err(Error::device(
             "no servo of ids 1-18 answers",
@@ -172,19 +172,19 @@ pub fn chosen(
 }
 
 /// Says in a line each which servos answer, and of which only bytes came.
-pub fn say_found(found: &Answering, talk: &Talk) {
+pub fn say_found(found: &Answering, console: &Console) {
     let ids = found.ids();
     if !ids.is_empty() {
         let (who, verb) = match ids.len() {
             1 => ("servo", "answers"),
             _ => ("servos", "answer"),
         };
-        talk.say(&format!(
+        console.say(&format!(
             "{who} {} {verb}, of ids 1-18; --ids names others",
             id_ranges(&ids)
         ));
     }
     if !found.garbled.is_empty() {
-        talk.say(&garbled_words(&found.garbled));
+        console.say(&garbled_words(&found.garbled));
     }
 }

@@ -15,7 +15,7 @@
 
 use super::interrupt::Interrupt;
 use super::robot::RobotArgs;
-use super::{ExitStatus, Talk, show::or_dash};
+use super::{Console, ExitStatus, show::or_dash};
 use handstand::link::record::{FileFormat, RecordingTally, RobotRecorder, read, record_samples};
 use handstand::{Result, output};
 use serde_json::json;
@@ -40,17 +40,17 @@ pub struct RecordArgs {
 }
 
 /// Samples until told to stop.
-pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &RecordArgs, console: &Console) -> Result<ExitStatus> {
     FileFormat::of(&args.file)?;
     output::vacant(&args.file, args.force)?;
     if let Some(from) = &args.from {
-        return convert(args, from, talk);
+        return convert(args, from, console);
     }
     let interrupt = Interrupt::listen();
-    let (mut source, ids) = args.robot.open(talk)?;
+    let (mut source, ids) = args.robot.open(console)?;
     let mut recorder = RobotRecorder::create(&args.file, &ids, args.force)?;
     let period_s = args.robot.period().map_or(0.01, |p| p.as_secs_f64());
-    let bar = talk.bar((args.seconds.unwrap_or(0.0) / period_s) as u64);
+    let bar = console.bar((args.seconds.unwrap_or(0.0) / period_s) as u64);
     let recorded = record_samples(
         &mut *source,
         &mut recorder,
@@ -66,12 +66,12 @@ pub fn run(args: &RecordArgs, talk: &Talk) -> Result<ExitStatus> {
     drop(bar);
     recorder.finish()?;
     for remark in source.remarks() {
-        talk.say(&format!("warning: {remark}"));
+        console.say(&format!("warning: {remark}"));
     }
-    report(args, &recorded?, None, talk)
+    report(args, &recorded?, None, console)
 }
 
-fn convert(args: &RecordArgs, from: &std::path::Path, talk: &Talk) -> Result<ExitStatus> {
+fn convert(args: &RecordArgs, from: &std::path::Path, console: &Console) -> Result<ExitStatus> {
     let recording = read(from)?;
     let mut recorder = RobotRecorder::create(&args.file, &recording.ids, args.force)?;
     let mut tally = RecordingTally::default();
@@ -81,22 +81,22 @@ fn convert(args: &RecordArgs, from: &std::path::Path, talk: &Talk) -> Result<Exi
     }
     recorder.finish()?;
     if recording.torn {
-        talk.say(&format!(
+        console.say(&format!(
             "{} ends in the middle of a sample or second, which was dropped",
             from.display()
         ));
     }
-    report(args, &tally, Some(recording.torn), talk)
+    report(args, &tally, Some(recording.torn), console)
 }
 
 fn report(
     args: &RecordArgs,
     tally: &RecordingTally,
     torn: Option<bool>,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<ExitStatus> {
-    if talk.json {
-        talk.data(&json!({
+    if console.json {
+        console.data(&json!({
             "file": args.file.display().to_string(),
             "samples": tally.samples,
             "seconds": tally.seconds(),
@@ -105,7 +105,7 @@ fn report(
             "torn": torn,
         }))?;
     }
-    talk.say(&format!(
+    console.say(&format!(
         "wrote {}: {} samples, {:.2} s, {} per second, {} answers missing",
         args.file.display(),
         tally.samples,

@@ -32,7 +32,7 @@ use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::port::Ids;
 use super::robot::RobotArgs;
-use super::{ExitStatus, Talk, show::or_dash};
+use super::{Console, ExitStatus, show::or_dash};
 use handstand::link::id_ranges;
 use handstand::link::record::{
     FollowedMotion, GoalMotion, MotionStop, Recording, RobotRecorder, SourceKind, follow, read,
@@ -68,13 +68,13 @@ pub struct ReplayArgs {
 }
 
 /// Follows the motion.
-pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &ReplayArgs, console: &Console) -> Result<ExitStatus> {
     let recording = chosen(read(&args.motion)?, args)?;
     let motion = GoalMotion::of(&recording, &args.motion)?;
     if let Some(file) = &args.record {
         output::vacant(file, args.force)?;
     }
-    talk.say(&format!(
+    console.say(&format!(
         "{}: {} servos, {:.1} s. The robot will move.",
         args.motion.display(),
         recording.ids.len(),
@@ -84,7 +84,7 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     let interrupt = Interrupt::listen();
     let watchdog = !args.no_watchdog;
     let (mut source, way) = (args.robot).open_to_move(&recording.ids, args.adapter, watchdog)?;
-    talk.say(match way {
+    console.say(match way {
         SourceKind::Stream => {
             "The CM-5 streams: any of its buttons stops the robot, and so does a dead line."
         }
@@ -98,7 +98,7 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
     let create = |file: &PathBuf| RobotRecorder::create(file, &recording.ids, args.force);
     let mut recorder = args.record.as_ref().map(create).transpose()?;
     interrupt.at_once(source.emergency_off());
-    let bar = talk.bar(motion.time_s.len() as u64);
+    let bar = console.bar(motion.time_s.len() as u64);
     let followed = follow(
         &motion,
         &mut *source,
@@ -111,9 +111,9 @@ pub fn run(args: &ReplayArgs, talk: &Talk) -> Result<ExitStatus> {
         recorder.finish()?;
     }
     for remark in source.remarks() {
-        talk.say(&format!("warning: {remark}"));
+        console.say(&format!("warning: {remark}"));
     }
-    report(&followed, &recording.ids, way, talk)
+    report(&followed, &recording.ids, way, console)
 }
 
 /// The recording of the servos that were named, or of all.
@@ -134,7 +134,7 @@ fn report(
     followed: &FollowedMotion,
     ids: &[u8],
     way: SourceKind,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<ExitStatus> {
     let (tracking, repeat) = (followed.tracking.value(), followed.repeat.value());
     let stopped = followed.stopped.as_ref().map(|why| match why {
@@ -161,19 +161,19 @@ fn report(
         "stopped": stopped,
     });
     let milli = |rad: Option<f64>| or_dash(rad, |rad| format!("{:.1} mrad", rad * 1e3));
-    talk.result(&data, || {
+    console.result(&data, || {
         let (tracking, repeat) = (milli(tracking), milli(repeat));
         format!("to the goals: {tracking} rms\nto the recording: {repeat} rms")
     })?;
     for (id, share) in silent {
-        talk.say(&format!(
+        console.say(&format!(
             "warning: servo {id} did not answer in {:.1} % of the samples, which the errors leave \
              out; `handstand bus doctor` finds the cause",
             100.0 * share
         ));
     }
     for (id, went, wanted) in &still {
-        talk.say(&format!(
+        console.say(&format!(
             "servo {id} did not follow: it went over {went:.3} rad where its goals go over \
              {wanted:.3} rad; is it blocked, or its torque limit too low? `handstand bus read {id}`"
         ));
@@ -181,7 +181,7 @@ fn report(
     match stopped {
         None => Ok(ExitStatus::answer(still.is_empty())),
         Some(why) => {
-            talk.say(&format!("stopped, torque is off: {why}"));
+            console.say(&format!("stopped, torque is off: {why}"));
             Ok(ExitStatus::Stopped)
         }
     }

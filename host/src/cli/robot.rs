@@ -1,6 +1,6 @@
 //! Servos to sample and move, as `record`, `replay` and `latency` take them.
 
-use super::Talk;
+use super::Console;
 use super::port::{AnyLink, DEFAULT_IDS, Ids, Port, chosen, id_list};
 use handstand::link::Protocol;
 use handstand::link::record::{
@@ -33,9 +33,9 @@ impl RobotArgs {
     ///
     /// # Errors
     /// No port, no firmware, no servo, or a rate that is none.
-    pub fn open(&self, talk: &Talk) -> Result<(Box<dyn SampleSource>, Vec<u8>)> {
+    pub fn open(&self, console: &Console) -> Result<(Box<dyn SampleSource>, Vec<u8>)> {
         let mut link = self.port.open()?;
-        let ids = self.chosen(&mut link, talk)?;
+        let ids = self.chosen(&mut link, console)?;
         Ok((self.opened(link, &ids, self.stream, true)?.0, ids))
     }
 
@@ -43,10 +43,10 @@ impl RobotArgs {
     ///
     /// # Errors
     /// None answers, or the port failed.
-    pub fn chosen(&self, link: &mut AnyLink, talk: &Talk) -> Result<Vec<u8>> {
+    pub fn chosen(&self, link: &mut AnyLink, console: &Console) -> Result<Vec<u8>> {
         let (streams, protocol) = (self.stream, self.port.protocol());
         let ask = || answering(link, &DEFAULT_IDS, streams, protocol);
-        chosen(self.ids.as_ref(), ask, talk)
+        chosen(self.ids.as_ref(), ask, console)
     }
 
     /// Opens these servos to move the robot: a CM-5 with Handstand's firmware streams unless

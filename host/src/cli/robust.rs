@@ -21,7 +21,7 @@ mod plan;
 
 use super::gains::of_options;
 use super::weight_arg::{WeightArg, weight};
-use super::{ExitStatus, Talk, input, show};
+use super::{Console, ExitStatus, input, show};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::study::{Case, MassErrors, radii, unstable_share};
@@ -89,7 +89,7 @@ struct GainRobustness {
 }
 
 /// Designs, draws, prints.
-pub fn run(args: &RobustArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &RobustArgs, console: &Console) -> Result<ExitStatus> {
     for (name, percent) in [("--masses", args.masses), ("--design", args.design)] {
         if percent >= 100.0 {
             return Err(Error::usage(
@@ -98,8 +98,8 @@ pub fn run(args: &RobustArgs, talk: &Talk) -> Result<ExitStatus> {
             ));
         }
     }
-    let gains = judged(args, &Model::load(&args.model)?, talk)?;
-    talk.result(&gains, || text(args, &gains))?;
+    let gains = judged(args, &Model::load(&args.model)?, console)?;
+    console.result(&gains, || text(args, &gains))?;
     let judged = if args.own() {
         gains.first()
     } else {
@@ -117,7 +117,7 @@ impl RobustArgs {
     }
 }
 
-fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobustness>> {
+fn judged(args: &RobustArgs, model: &Model, console: &Console) -> Result<Vec<GainRobustness>> {
     let case = Case::ideal(model.clone(), DEFAULT, args.ts);
     let errors = MassErrors {
         case: &case,
@@ -125,7 +125,7 @@ fn judged(args: &RobustArgs, model: &Model, talk: &Talk) -> Result<Vec<GainRobus
         draws: args.draws as usize,
         seed: args.seed,
     };
-    let bar = talk.bar(4 + u64::from(args.own()));
+    let bar = console.bar(4 + u64::from(args.own()));
     bar.set_message("drawing robots");
     let plants = errors.plants(args.masses / 100.0)?;
     let nominal = DesignModel::new(model, &upright(model), args.ts)?;

@@ -1,6 +1,6 @@
 //! Tables and figures as every command shows them.
 
-use super::Talk;
+use super::Console;
 use comfy_table::{ContentArrangement, Table};
 use handstand::diagnose::how_to_measure;
 use handstand::fitting::Undetermined;
@@ -43,7 +43,7 @@ pub fn undetermined(refused: &Undetermined) -> String {
 }
 
 /// Says which effects of the model a linear design leaves out.
-pub fn omitted(model: &Model, talk: &Talk) -> Result<()> {
+pub fn omitted(model: &Model, console: &Console) -> Result<()> {
     let model = handstand::sim::bare_motors(model);
     let omitted = linearise(&model, &upright(&model))?.omitted;
     if !omitted.is_empty() {
@@ -54,7 +54,7 @@ pub fn omitted(model: &Model, talk: &Talk) -> Result<()> {
                 None => title.to_string(),
             }
         });
-        talk.say(&format!(
+        console.say(&format!(
             "the designs leave out {}; the simulation has them",
             each.collect::<Vec<_>>().join(", ")
         ));

@@ -12,7 +12,7 @@
 //! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in
 //! `#t=1.5` opens the page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
 
-use super::{ExitStatus, Talk, input};
+use super::{Console, ExitStatus, input};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
 use handstand::report::file_names;
@@ -45,7 +45,7 @@ pub struct ViewArgs {
 }
 
 /// Reads, runs the models, writes the page.
-pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &ViewArgs, console: &Console) -> Result<ExitStatus> {
     output::vacant(&args.output, args.force)?;
     let model = input::model(&args.model)?;
     model.hinges_only("a page draws links that turn")?;
@@ -55,7 +55,7 @@ pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
             "a page shows measured angles: name the column of this one under [[log.joint]]",
         ));
     }
-    let motions = input::motions(&args.logs, &model.log, talk)?;
+    let motions = input::motions(&args.logs, &model.log, console)?;
     let mut scene = Scene::measured(&model, &motions);
     for (file, name) in args.others.iter().zip(file_names(&args.others)) {
         let other = input::model(file)?;
@@ -75,12 +75,12 @@ pub fn run(args: &ViewArgs, talk: &Talk) -> Result<ExitStatus> {
         let horizon = args.run.of(&other, &motions)?;
         scene.add_model(&other, &compare(&other, &name, &motions, horizon));
     }
-    scene.add_overlay(&model, &input::motions(&args.overlay, &model.log, talk)?);
-    let page = html(&scene, &talk.command)
+    scene.add_overlay(&model, &input::motions(&args.overlay, &model.log, console)?);
+    let page = html(&scene, &console.command)
         .map_err(|error| Error::file(&args.output, "write", error.into()))?;
-    talk.write(&args.output, &page, args.force)?;
-    if talk.json {
-        talk.data(&serde_json::json!({
+    console.write(&args.output, &page, args.force)?;
+    if console.json {
+        console.data(&serde_json::json!({
             "page": args.output.to_string_lossy(),
             "motions": scene.motions.iter().map(|m| &m.name).collect::<Vec<_>>(),
         }))?;

@@ -20,7 +20,7 @@
 //!
 //! It runs until Ctrl-C or for `--seconds`. `--json` prints `port`, `ids`, `cm5`, `robot`.
 
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 #[cfg(feature = "virtual-cm5")]
 use handstand::Error;
 use handstand::Result;
@@ -54,13 +54,13 @@ pub struct VirtualArgs {
 
 /// Serves until told to stop.
 #[cfg(not(feature = "virtual-cm5"))]
-pub fn run(_: &VirtualArgs, _: &Talk) -> Result<ExitStatus> {
+pub fn run(_: &VirtualArgs, _: &Console) -> Result<ExitStatus> {
     Err(super::simulated::absent())
 }
 
 /// Serves until told to stop.
 #[cfg(all(feature = "virtual-cm5", not(unix)))]
-pub fn run(_: &VirtualArgs, _: &Talk) -> Result<ExitStatus> {
+pub fn run(_: &VirtualArgs, _: &Console) -> Result<ExitStatus> {
     Err(Error::usage(
         "this system has no pseudo terminals",
         "use --port sim with the command itself",
@@ -69,7 +69,7 @@ pub fn run(_: &VirtualArgs, _: &Talk) -> Result<ExitStatus> {
 
 /// Serves until told to stop.
 #[cfg(all(feature = "virtual-cm5", unix))]
-pub fn run(args: &VirtualArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &VirtualArgs, console: &Console) -> Result<ExitStatus> {
     use handstand::link::virtual_cm5::{StateLog, serve, set_up, spec_with_robot};
 
     let spec = spec_with_robot(&args.words, args.robot.as_deref())?;
@@ -95,13 +95,13 @@ pub fn run(args: &VirtualArgs, talk: &Talk) -> Result<ExitStatus> {
         "cm5": args.cm5,
         "robot": spec.robot.as_ref().map(|robot| &robot.model),
     });
-    talk.result(&data, || pty.name().to_string())?;
+    console.result(&data, || pty.name().to_string())?;
     let speed = if args.cm5 { 57_600 } else { 1_000_000 };
-    talk.say(&format!(
+    console.say(&format!(
         "{} simulated servos at {speed} baud; Ctrl-C ends it",
         spec.ids.len(),
     ));
-    let bar = talk.bar(0);
+    let bar = console.bar(0);
     serve(&mut device, &pty, |elapsed| {
         if let Some(state) = states.newest()? {
             bar.set_message(state);

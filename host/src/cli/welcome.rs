@@ -2,7 +2,7 @@
 //!
 //! `--json` prints `question` and `begin`, a list of `command` and `what`.
 
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::Result;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -54,8 +54,8 @@ const STARTS: [Start; 3] = [
 ];
 
 /// Prints where to begin.
-pub fn run(talk: &Talk) -> Result<ExitStatus> {
-    talk.result(&data(), text)?;
+pub fn run(console: &Console) -> Result<ExitStatus> {
+    console.result(&data(), text)?;
     Ok(ExitStatus::Done)
 }
 

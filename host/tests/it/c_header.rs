@@ -6,7 +6,7 @@ use handstand::Model;
 use handstand::sim::closed_loop::{Controller as _, Measurement};
 use handstand::synth::controllers::FixedPointFeedback;
 use handstand::synth::export::{Provenance, c_header, rust_file};
-use handstand::synth::{CostWeights, Design, Fixed, Request, Time, Weight};
+use handstand::synth::{CostWeights, Design, FixedDesign, Request, Time, Weight};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
@@ -39,7 +39,7 @@ fn made() -> Provenance {
     }
 }
 
-fn designed(model: &Model, random: &mut Random) -> Option<(Design, Fixed)> {
+fn designed(model: &Model, random: &mut Random) -> Option<(Design, FixedDesign)> {
     let mut decade = |low, high| 10f64.powf(random.uniform(low, high));
     let diagonal = (0..6).map(|_| decade(-2.0, 2.0)).collect();
     let request = Request {
@@ -145,7 +145,7 @@ int main(void)
 
 /// Inputs in steps of the controller that a verification puts into the loop, given the states of
 /// these steps in SI.
-fn in_the_loop(design: &Design, fixed: &Fixed, x: &[i64]) -> Vec<i64> {
+fn in_the_loop(design: &Design, fixed: &FixedDesign, x: &[i64]) -> Vec<i64> {
     let law = FixedPointFeedback::new(fixed.law.clone(), None, &design.x0, 3);
     let steps = x.iter().zip(&fixed.law.state_step);
     let si: Vec<f64> = steps.map(|(x, step)| *x as f64 * step).collect();

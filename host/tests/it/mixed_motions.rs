@@ -8,7 +8,7 @@ use handstand::motion::{Motion, MotionSource};
 use handstand::sim::closed_loop::{
     ClosedLoop, Commands, InitialState, Sensor, StateFeedback, stream,
 };
-use handstand::sim::{Memory, Plant, Start, predict};
+use handstand::sim::{Plant, PlantMemory, StartState, predict};
 use handstand::synth::StateFeedbackPlan;
 use handstand_shared::raw::Position;
 use std::fmt::Write as _;
@@ -76,12 +76,12 @@ fn hanging(bench: &Bench, seed: f64, seconds: f64) -> String {
         time_s,
     };
     let plant = Plant::new(&model, &motion);
-    let start = Start {
+    let start = StartState {
         angle_rad: vec![0.5 + 0.1 * seed, 0.0, 0.0],
         speed_rad_s: vec![0.0; 3],
         reading_slope: None,
     };
-    let (mut readings, mut sensors) = (vec![0.0; 3 * samples], Memory::default());
+    let (mut readings, mut sensors) = (vec![0.0; 3 * samples], PlantMemory::default());
     predict(
         &plant,
         &motion,

@@ -7,7 +7,7 @@ use handstand::diagnose::{
 use handstand::fitting::Candidate;
 use handstand::log::{LogRequest, read};
 use handstand::motion::{Motion, MotionSource};
-use handstand::sim::{Memory, Plant, Start, predict};
+use handstand::sim::{Plant, PlantMemory, StartState, predict};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -79,12 +79,12 @@ fn log(truth: &Model, seed: f64) -> String {
         time_s,
     };
     let plant = Plant::new(truth, &motion);
-    let start = Start {
+    let start = StartState {
         angle_rad: vec![0.2 * seed, -0.1],
         speed_rad_s: vec![0.0; 2],
         reading_slope: None,
     };
-    let (mut readings, mut sensors) = (vec![0.0; 2 * SAMPLES], Memory::default());
+    let (mut readings, mut sensors) = (vec![0.0; 2 * SAMPLES], PlantMemory::default());
     predict(
         &plant,
         &motion,

@@ -2,7 +2,7 @@
 
 use super::median_seconds;
 use handstand::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use handstand::fitting::{FitData, FitOptions, Horizon, best_fit, fit, fit_start_states};
+use handstand::fitting::{FitOptions, FitProblem, Horizon, best_fit, fit, fit_start_states};
 use handstand::log::{LogRequest, read};
 use handstand::model::ParameterPath;
 use handstand::motion::Motion;
@@ -133,7 +133,7 @@ impl Arm {
     /// Seconds of the four-parameter fit of the whole log, and the error it leaves, rad.
     pub fn fit_seconds(&self, repeats: usize) -> (f64, f64) {
         let start = self.off_by(&FIXED_START);
-        let data = FitData::new(&self.model, self.motions.clone(), Horizon::Whole);
+        let data = FitProblem::new(&self.model, self.motions.clone(), Horizon::Whole);
         let mut left = 0.0;
         let seconds = median_seconds(repeats, || {
             let found = fit(&start, &self.free, &data, None, FitOptions::default());
@@ -144,7 +144,7 @@ impl Arm {
 
     /// Fits by stages from seeded starts, each parameter up to a factor 5 off.
     pub fn starts(&self, count: usize, seed: u64) -> Starts {
-        let judged = FitData::new(&self.model, self.motions.clone(), Horizon::Whole);
+        let judged = FitProblem::new(&self.model, self.motions.clone(), Horizon::Whole);
         let at_truth = fit(
             &self.model,
             &self.free,
@@ -167,7 +167,7 @@ impl Arm {
             let mut values = Vec::new();
             let mut left = 0.0;
             times.push(median_seconds(1, || {
-                let data = FitData::new(&start, self.motions.clone(), Horizon::Whole);
+                let data = FitProblem::new(&start, self.motions.clone(), Horizon::Whole);
                 let found = best_fit(&start, &self.free, &data);
                 left = best_fit(&found.model, &[], &judged).rms(&judged);
                 values = found.values();

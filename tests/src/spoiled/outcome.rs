@@ -119,7 +119,10 @@ fn leaves_out(spoiling: Spoiling, left_out: &LeaveOut) -> bool {
     }
 }
 
-fn said(found: &[handstand::diagnose::conventions::Found], left_out: &[LeaveOut]) -> Vec<String> {
+fn said(
+    found: &[handstand::diagnose::conventions::LogFault],
+    left_out: &[LeaveOut],
+) -> Vec<String> {
     let trials = found
         .iter()
         .flat_map(|f| std::iter::once(&f.trial).chain(&f.rivals));

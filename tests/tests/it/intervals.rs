@@ -5,7 +5,7 @@
 
 use handstand::Model;
 use handstand::challenge::{Hidden, generate};
-use handstand::fitting::{FitData, FitOptions, Horizon, fit, intervals};
+use handstand::fitting::{FitOptions, FitProblem, Horizon, fit, intervals};
 use handstand::log::{LogRequest, read};
 use std::path::Path;
 
@@ -23,7 +23,7 @@ fn com_angle(seed: u64) -> (f64, f64) {
         std::fs::write(&path, content).unwrap();
         motions.extend(read(&[LogRequest::whole(path)], &truth.log).unwrap());
     }
-    let data = FitData::new(&truth, motions, Horizon::Whole);
+    let data = FitProblem::new(&truth, motions, Horizon::Whole);
     let mut start = truth.clone();
     for path in &truth.free {
         assert!(path.set(&mut start, 1.1 * path.get(&truth).unwrap()));

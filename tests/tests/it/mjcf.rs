@@ -5,7 +5,7 @@ use handstand::Model;
 use handstand::challenge::{KINDS, Motions, true_model_toml};
 use handstand::model::export::mjcf;
 use handstand::motion::Motion;
-use handstand::sim::{Memory, Plant, Start, predict};
+use handstand::sim::{Plant, PlantMemory, StartState, predict};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -43,9 +43,9 @@ fn motion(model: &Model) -> Motion {
     }
 }
 
-fn start(model: &Model) -> Start {
+fn start(model: &Model) -> StartState {
     let joints = model.link_count();
-    Start {
+    StartState {
         angle_rad: (0..joints).map(|joint| 0.6 - 0.3 * joint as f64).collect(),
         speed_rad_s: vec![0.0; joints],
         reading_slope: None,
@@ -53,11 +53,11 @@ fn start(model: &Model) -> Start {
 }
 
 /// Per sample, the joints' relative angles, rad.
-fn ours(model: &Model, motion: &Motion, start: &Start) -> Vec<Vec<f64>> {
+fn ours(model: &Model, motion: &Motion, start: &StartState) -> Vec<Vec<f64>> {
     let plant = Plant::new(model, motion);
     let samples = motion.len();
     let mut readings = vec![0.0; samples * plant.len()];
-    let mut sensors = Memory::default();
+    let mut sensors = PlantMemory::default();
     predict(
         &plant,
         motion,

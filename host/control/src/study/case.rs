@@ -5,7 +5,9 @@ use crate::model::{Angles, Model};
 use crate::sim::closed_loop::{
     Clock, ClosedLoop, Commands, Controller, Drives, KnownEquilibrium, Sensor, StabilityCriteria,
 };
-use crate::synth::controllers::{ControllerDesign, DesignModel, LinearLaw, ServoLag, Through};
+use crate::synth::controllers::{
+    ControllerDesign, DesignModel, LinearLaw, ServoLag, ThroughServos,
+};
 use crate::synth::{self, Weight};
 
 /// What is run.
@@ -149,7 +151,7 @@ impl Case {
             controller = Box::new(KnownEquilibrium::new(controller, equilibrium_rad));
         }
         if let Some(servo) = self.servo {
-            controller = Box::new(Through {
+            controller = Box::new(ThroughServos {
                 inner: controller,
                 servo,
                 drives: closed.plant.drives(),

@@ -64,7 +64,7 @@ pub use response::{LoopResponse, response, step_response};
 pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
-pub use tune::{TUNING_STEPS, Tried, Tuned, tune};
+pub use tune::{TUNING_STEPS, Tuned, WeightTrial, tune};
 pub use verified_loop::VerifiedLaw;
 pub use verify::{
     LimitedFigure, UndesignedEffect, Verification, Without, left_out, verification_steps, verify,

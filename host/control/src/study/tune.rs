@@ -27,7 +27,7 @@ const PLAIN: usize = 2;
 
 /// Weights, and what came of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Tried {
+pub struct WeightTrial {
     /// Weights of the states.
     pub q: Vec<f64>,
     /// Weights of the inputs.
@@ -47,7 +47,7 @@ pub struct Tried {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tuned {
     /// All that was tried: Bryson's rule first, then the paper's weights.
-    pub tried: Vec<Tried>,
+    pub tried: Vec<WeightTrial>,
     /// The chosen one: its place among them. Region and disk margin are not smaller than those of
     /// the better of the first two: the one with the larger region, then with the larger margin. Of
     /// those one with a margin of 6 dB is taken if there is any, then the largest region, then the
@@ -75,10 +75,10 @@ impl Tuned {
         })
     }
 
-    fn of(tried: Vec<Tried>) -> Tuned {
+    fn of(tried: Vec<WeightTrial>) -> Tuned {
         let mut tuned = Tuned { tried, chosen: 0 };
         let bar = tuned.tried[tuned.plain()].clone();
-        let not_worse = |one: &Tried| {
+        let not_worse = |one: &WeightTrial| {
             one.region_rad >= bar.region_rad
                 && (bar.region_rad == 0.0 || one.disk_margin >= bar.disk_margin)
         };
@@ -99,7 +99,7 @@ impl Tuned {
 }
 
 /// The place of the largest by rank; the first of equals.
-fn best(tried: &[Tried], rank: impl Fn(&Tried) -> [f64; 4]) -> usize {
+fn best(tried: &[WeightTrial], rank: impl Fn(&WeightTrial) -> [f64; 4]) -> usize {
     let order = |a: [f64; 4], b: [f64; 4]| {
         let mut orders = a.into_iter().zip(b).map(|(a, b)| a.total_cmp(&b));
         let first = orders.find(|order| order.is_ne());
@@ -141,7 +141,7 @@ pub fn tune(
             Err(error) if tried.is_empty() => return Err(error.into()),
             // Gains that overflow a word or lose the loop by rounding are no answer; the paper's
             // keep their place.
-            Err(_) if tried.len() < PLAIN => tried.push(Tried {
+            Err(_) if tried.len() < PLAIN => tried.push(WeightTrial {
                 disk_margin: 0.0,
                 stabilised_share: 0.0,
                 region_rad: 0.0,
@@ -160,14 +160,14 @@ fn judged(
     designed_for: &Model,
     design: &Design,
     request: &Request,
-) -> Result<Tried> {
+) -> Result<WeightTrial> {
     let near = figures_near(model, design, request)?;
     let holds = near.stabilised_share >= STABILISED_SHARE;
     let region = holds.then(|| stabilised_from(model, design, request));
     let region = region.transpose()?;
     let margins = design_margins(designed_for, design)?;
     let diagonal = |weight: &nalgebra::DMatrix<f64>| weight.diagonal().as_slice().to_vec();
-    Ok(Tried {
+    Ok(WeightTrial {
         q: diagonal(&design.weights[0]),
         r: diagonal(&design.weights[1]),
         disk_margin: margins.map_or(0.0, |margins| margins.inputs.disk.alpha),
@@ -181,8 +181,8 @@ fn judged(
 mod tests {
     use super::*;
 
-    fn tried(disk_margin: f64, region_rad: f64) -> Tried {
-        Tried {
+    fn tried(disk_margin: f64, region_rad: f64) -> WeightTrial {
+        WeightTrial {
             q: vec![1.0],
             r: vec![1.0],
             disk_margin,
@@ -192,7 +192,7 @@ mod tests {
         }
     }
 
-    fn choose(plain: [Tried; 2], others: &[Tried]) -> usize {
+    fn choose(plain: [WeightTrial; 2], others: &[WeightTrial]) -> usize {
         Tuned::of([&plain[..], others].concat()).chosen
     }
 

@@ -2,7 +2,7 @@
 
 mod fixed;
 
-pub use fixed::Fixed;
+pub use fixed::FixedDesign;
 
 use super::controllability::{Controllability, controllability, observability};
 use super::eigen::{largest, poles};
@@ -61,7 +61,7 @@ pub struct Design {
     /// The estimator.
     pub estimator: Option<Estimation>,
     /// The fixed-point law.
-    pub fixed: Option<Fixed>,
+    pub fixed: Option<FixedDesign>,
 }
 
 /// An estimator and the controller it makes with the gains.

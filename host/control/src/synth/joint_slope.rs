@@ -26,7 +26,7 @@ pub(super) struct JointSlope {
 }
 
 /// A joint that is held in its pose.
-pub(super) struct Held {
+pub(super) struct HeldJoint {
     pub slope: JointSlope,
     /// Input that holds it; none of a passive joint.
     pub input: Option<f64>,
@@ -113,7 +113,7 @@ impl<'a> JointAt<'a> {
 
     /// Slopes, and the input that holds `gravity_nm`; a passive joint must balance within
     /// `slack_nm`.
-    pub fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<Held, DesignError> {
+    pub fn held(&self, gravity_nm: f64, slack_nm: f64) -> Result<HeldJoint, DesignError> {
         let (at, mut omitted) = (self.at_rest(), Vec::new());
         for site in [Site::Command, Site::Gear, Site::Friction, Site::Sensor] {
             self.slopes(site, at, &mut omitted);
@@ -145,7 +145,7 @@ impl<'a> JointAt<'a> {
                 units: self.units,
             });
         };
-        Ok(Held {
+        Ok(HeldJoint {
             slope,
             input,
             omitted,

@@ -41,7 +41,7 @@ mod zeros;
 pub use crate::model::upright;
 pub use controllability::{Controllability, controllability, observability};
 pub use cost_weights::CostWeights;
-pub use design::{Design, Estimation, Fixed};
+pub use design::{Design, Estimation, FixedDesign};
 pub use discretise::{zoh, zoh_each};
 pub use eigen::{Mode, poles};
 pub use error::{DesignError, PlantMode, RiccatiRole};

@@ -19,7 +19,7 @@ const LEAST: usize = 4;
 pub struct Side {
     /// Where the dead zone ends, in the input's unit.
     pub edge: IntervalEstimate,
-    /// OutputQuantity per input outside.
+    /// Output per input outside.
     pub slope: IntervalEstimate,
     /// OutputQuantity at which it stays; none where no saturation is seen.
     pub limit: Option<IntervalEstimate>,

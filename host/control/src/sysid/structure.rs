@@ -69,7 +69,7 @@ impl Structure {
         }
     }
 
-    /// OutputQuantity error, orders as MATLAB's `oe` has them.
+    /// Output error, orders as MATLAB's `oe` has them.
     pub fn oe([nb, nf, nk]: [usize; 3]) -> Self {
         Structure {
             family: Family::Oe,

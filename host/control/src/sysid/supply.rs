@@ -17,7 +17,7 @@ const LEAST: usize = 8;
 pub struct SupplyLine {
     /// Change of `speed / command - 1` per volt.
     pub error_per_v: IntervalEstimate,
-    /// SupplyLine at which the speed is the one commanded, V; its interval may be unbounded.
+    /// Supply at which the speed is the one commanded, V; its interval may be unbounded.
     pub right_at_v: IntervalEstimate,
     /// Lowest and highest supply seen, V.
     pub range_v: (f64, f64),

@@ -1,7 +1,7 @@
 //! Errors summed in blocks of time, so that their uncertainty can be estimated by resampling the
 //! blocks.
 
-use crate::fitting::{FitData, Residuals};
+use crate::fitting::{FitProblem, Residuals};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -37,7 +37,7 @@ const RESAMPLES: usize = 600;
 
 impl BlockErrors {
     /// Sums weighted residuals.
-    pub fn of(residuals: &Residuals, data: &FitData) -> BlockErrors {
+    pub fn of(residuals: &Residuals, data: &FitProblem) -> BlockErrors {
         let mut errors = BlockErrors {
             motions: vec![(0.0, 0); data.motions.len()],
             signals: vec![(0.0, 0); data.sigma.len()],

@@ -15,7 +15,7 @@ use super::stability;
 use super::values::{compared, contradicted};
 use super::words;
 use crate::fitting::{
-    ErrorReduction, FitData, FittedValue, MotionWindow, fitted_values, locally_fitted_values,
+    ErrorReduction, FitProblem, FittedValue, MotionWindow, fitted_values, locally_fitted_values,
 };
 use crate::model::MeasuredSignal;
 use crate::output::number::{percent, short};
@@ -338,7 +338,7 @@ fn motions(evidence: &VerdictEvidence) -> Vec<MotionError> {
     };
     let rms = |m: (f64, usize)| (m.0 / m.1.max(1) as f64).sqrt();
     let mut list = Vec::new();
-    let mut add = |data: &FitData, before: &BlockErrors, after: &BlockErrors, held_out: bool| {
+    let mut add = |data: &FitProblem, before: &BlockErrors, after: &BlockErrors, held_out: bool| {
         list.extend(
             data.motions
                 .iter()

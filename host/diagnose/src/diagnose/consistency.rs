@@ -11,7 +11,7 @@
 
 use super::hypothesis::Hypothesis;
 use super::verdict::FAR_OFF;
-use crate::fitting::{Fit, FitData, FitOptions, fit, fit_start_states};
+use crate::fitting::{Fit, FitOptions, FitProblem, fit, fit_start_states};
 use rayon::prelude::*;
 
 /// Iterations of a motion's own fit, from the values found for all, and of a fit to all from its.
@@ -23,7 +23,7 @@ pub(super) struct OwnFits(Vec<Fit>);
 impl OwnFits {
     /// Fits each of the training motions; `None` with fewer than two of them, and where nothing is
     /// left above the noise.
-    pub fn of(hypothesis: &Hypothesis, training: &FitData) -> Option<OwnFits> {
+    pub fn of(hypothesis: &Hypothesis, training: &FitProblem) -> Option<OwnFits> {
         let evaluation = hypothesis.evaluation.as_ref()?;
         if training.motions.len() < 2 || evaluation.training.is_noise() {
             return None;
@@ -32,9 +32,17 @@ impl OwnFits {
         let own = |motion: usize| {
             let own = training.only(motion);
             let windows = training.windows_of(motion);
-            let nodes: Vec<_> = windows.map(|(w, _)| joint.nodes[w].clone()).collect();
+            let window_starts: Vec<_> = windows
+                .map(|(w, _)| joint.window_starts[w].clone())
+                .collect();
             let options = FitOptions::iterations(ITERATIONS);
-            fit(&joint.model, &joint.free, &own, Some(&nodes), options)
+            fit(
+                &joint.model,
+                &joint.free,
+                &own,
+                Some(&window_starts),
+                options,
+            )
         };
         let motions = (0..training.motions.len()).into_par_iter();
         Some(OwnFits(motions.map(own).collect()))
@@ -42,7 +50,7 @@ impl OwnFits {
 
     /// The fit to all motions from the values of one of them, if it leaves less than the
     /// hypothesis.
-    pub fn fit_to_all(&self, hypothesis: &Hypothesis, training: &FitData) -> Option<Fit> {
+    pub fn fit_to_all(&self, hypothesis: &Hypothesis, training: &FitProblem) -> Option<Fit> {
         let joint = &hypothesis.evaluation.as_ref()?.fit;
         let cost = |fit: &Fit| fit.residuals.cost();
         let suits_all = |own: &Fit| {
@@ -54,8 +62,14 @@ impl OwnFits {
             .into_iter()
             .min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let options = FitOptions::iterations(ITERATIONS);
-        let nodes = Some(best.nodes.as_slice());
-        Some(fit(&best.model, &joint.free, training, nodes, options))
+        let window_starts = Some(best.window_starts.as_slice());
+        Some(fit(
+            &best.model,
+            &joint.free,
+            training,
+            window_starts,
+            options,
+        ))
     }
 
     /// Share of the squared error above the noise, on the training motions, that goes when every
@@ -83,10 +97,10 @@ mod tests {
 
     /// The arm's viscous friction, fitted with so many iterations from this value to its two
     /// motions, of which the first may be recorded with a share of that friction only.
-    fn friction(share: f64, from: f64, iterations: usize) -> (Hypothesis, FitData) {
+    fn friction(share: f64, from: f64, iterations: usize) -> (Hypothesis, FitProblem) {
         let (model, mut training, _) = arm(1, &HIDDEN);
         training[0] = recorded(&weakened_arm(1, &HIDDEN, share)).1.swap_remove(0);
-        let training = FitData::new(&model, training, Horizon::Whole);
+        let training = FitProblem::new(&model, training, Horizon::Whole);
         let search = fitted(&evaluator(1, &HIDDEN), &HIDDEN, [&[0.02]]).search;
         let mut start = search.model.clone();
         assert!(search.free.last().unwrap().set(&mut start, from));

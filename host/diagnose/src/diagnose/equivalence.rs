@@ -12,11 +12,12 @@ use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
 use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
-use super::replacement::{Other, ReplaceablePart};
+use super::replacement::{ReplaceablePart, Substitute};
 use super::selection::effective_share;
 use super::values::contradicted_paths;
 use crate::fitting::{
-    Candidate, FitData, FitOptions, Node, down_the_stairs, fit, fit_start_states, predicted,
+    Candidate, FitOptions, FitProblem, WindowStart, descend_jumping_law, fit, fit_start_states,
+    predicted,
 };
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -30,8 +31,8 @@ const REFITTED: usize = 3;
 
 /// All motions as an explanation predicts them, without noise.
 struct Predicted {
-    data: FitData,
-    nodes: Vec<Node>,
+    data: FitProblem,
+    window_starts: Vec<WindowStart>,
     /// Samples that count as independent, as a share of all.
     effective_share: f64,
     /// Squared weighted residuals that the explanation leaves of its own prediction.
@@ -52,8 +53,11 @@ impl Evaluator<'_> {
         let of_part = |part: &ReplaceablePart| {
             let (model, free) = self.without(chosen, part);
             // The derivatives where the part is missing and all else is as it was.
-            let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
-            let rest = fit(&model, &free, &self.search, nodes, options);
+            let (window_starts, options) = (
+                Some(&chosen.search.window_starts[..]),
+                FitOptions::iterations(0),
+            );
+            let rest = fit(&model, &free, &self.search, window_starts, options);
             let mut others = self.others(chosen, part, &rest);
             others.truncate(SIMULATED);
             let same = others.into_par_iter().filter(|other| predicted.fits(other));
@@ -117,27 +121,27 @@ impl Evaluator<'_> {
     fn predicted(&self, chosen: &Hypothesis) -> Option<Predicted> {
         let evaluation = chosen.evaluation.as_ref()?;
         let found = &evaluation.fit;
-        let (mut data, mut nodes) = (self.training.clone(), found.nodes.clone());
+        let (mut data, mut window_starts) = (self.training.clone(), found.window_starts.clone());
         if let Some(held_out) = &self.held_out {
             data = data.joined(held_out);
-            nodes.extend(fit_start_states(&found.model, held_out).nodes);
+            window_starts.extend(fit_start_states(&found.model, held_out).window_starts);
         }
         let windows = (0..data.motions.len()).into_par_iter();
-        let readings = windows.map(|motion| predicted(&found.model, &data, &nodes, motion));
+        let readings = windows.map(|motion| predicted(&found.model, &data, &window_starts, motion));
         let readings: Vec<Vec<Vec<f64>>> = readings.collect();
         let data = data.measuring(&readings);
         let jumping = chosen.set.iter().filter(|effect| effect.jumps());
         Some(Predicted {
-            own_cost: left(&data, &nodes, &found.model, &found.free),
+            own_cost: left(&data, &window_starts, &found.model, &found.free),
             effective_share: effective_share(&evaluation.training, found),
             jumping: jumping.flat_map(Candidate::paths).collect(),
             data,
-            nodes,
+            window_starts,
         })
     }
 
     /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it was.
-    fn evaluated_other(&self, other: Other, tried: &[Hypothesis]) -> Hypothesis {
+    fn evaluated_other(&self, other: Substitute, tried: &[Hypothesis]) -> Hypothesis {
         let known = tried
             .iter()
             .find(|h| h.values == other.values && h.adds(&other.set));
@@ -160,9 +164,9 @@ impl Evaluator<'_> {
 impl Predicted {
     /// Whether another explanation, fitted to these predictions, leaves no more of them than the
     /// noise can show.
-    fn fits(&self, other: &Other) -> bool {
+    fn fits(&self, other: &Substitute) -> bool {
         let leaves_nothing = |model: &Model| {
-            let others = left(&self.data, &self.nodes, model, &other.free);
+            let others = left(&self.data, &self.window_starts, model, &other.free);
             is_below_noise((others - self.own_cost).max(0.0), self.effective_share)
         };
         leaves_nothing(&other.model)
@@ -174,21 +178,35 @@ impl Predicted {
     /// The other explanation, fitted with the values of the laws held that both have and that jump:
     /// these should not leave their valley while all else finds its own. `None` where there is no
     /// such law.
-    fn closer(&self, other: &Other) -> Option<Model> {
+    fn closer(&self, other: &Substitute) -> Option<Model> {
         let moves = |path: &&ParameterPath| !self.jumping.contains(path);
         let free: Vec<ParameterPath> = other.free.iter().filter(moves).copied().collect();
         let options = FitOptions::iterations(FINISH);
-        let closer = || fit(&other.model, &free, &self.data, Some(&self.nodes), options).model;
+        let closer = || {
+            fit(
+                &other.model,
+                &free,
+                &self.data,
+                Some(&self.window_starts),
+                options,
+            )
+            .model
+        };
         (free.len() < other.free.len()).then(closer)
     }
 }
 
 /// Squared weighted residuals that a model leaves of these data once it is fitted to them.
-fn left(data: &FitData, nodes: &[Node], model: &Model, free: &[ParameterPath]) -> f64 {
+fn left(
+    data: &FitProblem,
+    window_starts: &[WindowStart],
+    model: &Model,
+    free: &[ParameterPath],
+) -> f64 {
     // A first small step must not end it: what is left decides.
     let options = FitOptions::iterations(FINISH);
-    let found = fit(model, free, data, Some(nodes), options);
-    down_the_stairs(found, data, options).residuals.cost()
+    let found = fit(model, free, data, Some(window_starts), options);
+    descend_jumping_law(found, data, options).residuals.cost()
 }
 
 /// Whether a difference of two predictions, its squares weighted by the noise and summed over all

@@ -10,10 +10,10 @@ use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
 use super::progress::{Course, Stage};
 use super::residual_structure::residual_structure;
-use super::search::Found;
+use super::search::SearchResults;
 use super::values::as_given;
 use crate::fitting::{
-    Candidate, Fit, FitData, FitOptions, Horizon, PredictionChange, Sizes, changes, coarsened,
+    Candidate, Fit, FitOptions, FitProblem, Horizon, PredictionChange, Sizes, changes, coarsened,
     is_followed, search_horizons,
 };
 use crate::model::{Model, ParameterPath};
@@ -33,11 +33,11 @@ pub(super) enum Reach {
 /// What every hypothesis is fitted to and judged by.
 pub(super) struct Evaluator<'a> {
     /// Training motions in short windows, to search on.
-    pub search: FitData,
+    pub search: FitProblem,
     /// Training motions over the evaluation horizon.
-    pub training: FitData,
+    pub training: FitProblem,
     /// Held-out motions over the evaluation horizon.
-    pub held_out: Option<FitData>,
+    pub held_out: Option<FitProblem>,
     /// The model as it came.
     pub given: Hypothesis,
     /// The model with its free values refitted.
@@ -66,7 +66,7 @@ pub(super) struct Evaluator<'a> {
     pub follows_first: bool,
     pub course: Course<'a>,
     /// Where a search of everything parts from this one.
-    pub fork: Option<Box<(Evaluator<'a>, Found)>>,
+    pub fork: Option<Box<(Evaluator<'a>, SearchResults)>>,
     /// What was evaluated since the search last kept what it found, and the best of all.
     evaluated: Mutex<Evaluated>,
 }
@@ -97,7 +97,7 @@ impl<'a> Evaluator<'a> {
             options.most_effects
         };
         course.begin(Stage::Base, reach == Reach::Everything, BASE_STEPS);
-        let whole = FitData::new(model, training, Horizon::Whole).halted_by(&course.halt);
+        let whole = FitProblem::new(model, training, Horizon::Whole).halted_by(&course.halt);
         let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
         let file_step_s = model.step_s;
@@ -113,7 +113,7 @@ impl<'a> Evaluator<'a> {
         let mut base = Hypothesis::new(Vec::new(), start.fit);
         let training = whole.recut(longest);
         let held_out = (!held_out.is_empty())
-            .then(|| FitData::new(model, held_out, longest).weighted_like(&training))
+            .then(|| FitProblem::new(model, held_out, longest).weighted_like(&training))
             .map(|held_out| held_out.halted_by(&course.halt));
         base.evaluate(
             &search,
@@ -311,7 +311,7 @@ impl<'a> Evaluator<'a> {
 /// Where the search starts: the windows that the fitted base model follows.
 struct SearchStart {
     horizon: Horizon,
-    data: FitData,
+    data: FitProblem,
     /// The model in the steps that it is searched with.
     model: Model,
     fit: Fit,
@@ -319,7 +319,7 @@ struct SearchStart {
 
 impl SearchStart {
     /// Over the first of these horizons that the model follows, or the last; at least one.
-    fn new(model: &Model, whole: &FitData, horizons: &[Horizon], few: bool, seed: u64) -> Self {
+    fn new(model: &Model, whole: &FitProblem, horizons: &[Horizon], few: bool, seed: u64) -> Self {
         let start = |horizon: Horizon| {
             let data = whole.recut(horizon);
             let model = coarsened(model, &data);
@@ -346,7 +346,7 @@ impl SearchStart {
 pub(super) fn every_change(
     base: &Hypothesis,
     candidates: &[Candidate],
-    data: &FitData,
+    data: &FitProblem,
 ) -> Vec<Vec<PredictionChange>> {
     let candidates = candidates.par_iter();
     candidates

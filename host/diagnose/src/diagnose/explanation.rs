@@ -10,7 +10,7 @@ use super::verdict::{Kind, Signs};
 
 /// Every explanation that was tried.
 #[derive(Default)]
-pub(super) struct Tried {
+pub(super) struct SearchOutcome {
     /// Sets of effects.
     pub hypotheses: Vec<Hypothesis>,
     /// Every single value of the given model, refitted.
@@ -24,7 +24,7 @@ pub(super) struct Tried {
 /// Everything the verdict rests on.
 pub(super) struct VerdictEvidence<'a> {
     pub evaluator: &'a Evaluator<'a>,
-    pub tried: &'a Tried,
+    pub tried: &'a SearchOutcome,
     /// The simplest explanation that is not clearly worse than the best.
     pub explanation: Explanation<'a>,
     /// Those whose predictions no noise lets these motions tell from it.
@@ -77,7 +77,7 @@ impl<'a> Explanation<'a> {
     }
 }
 
-impl Tried {
+impl SearchOutcome {
     /// The simplest explanation that is not clearly worse than the best.
     pub fn explanation<'a>(&'a self, evaluator: &'a Evaluator<'a>) -> Explanation<'a> {
         let (given, base) = (&evaluator.given, &evaluator.base);

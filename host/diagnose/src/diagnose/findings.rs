@@ -91,7 +91,7 @@ pub struct RuledOut {
     pub training_error_rad: f64,
     /// Error it leaves on held-out motions, rad, where it came that far.
     pub held_out_error_rad: Option<f64>,
-    /// PredictionChange of the Bayesian information criterion against the base model; negative is
+    /// Change of the Bayesian information criterion against the base model; negative is
     /// better.
     pub bic_change: f64,
     /// Whether these motions tell it from the chosen explanation at all: if not, it does as well

@@ -5,7 +5,7 @@ use super::budget::{EVALUATE, FINISH};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::verdict::FAR_OFF;
-use crate::fitting::{FitData, FitOptions, Horizon};
+use crate::fitting::{FitOptions, FitProblem, Horizon};
 use crate::motion::Motion;
 use rayon::prelude::*;
 
@@ -160,7 +160,7 @@ impl Evaluator<'_> {
     }
 
     /// The motions to learn from and those held out, cut to a horizon.
-    fn cut(&self, horizon: Horizon) -> (FitData, Option<FitData>) {
+    fn cut(&self, horizon: Horizon) -> (FitProblem, Option<FitProblem>) {
         let held_out = self.held_out.as_ref().map(|data| data.recut(horizon));
         (self.training.recut(horizon), held_out)
     }
@@ -199,7 +199,7 @@ impl Evaluator<'_> {
         &mut self,
         horizon: Horizon,
         sizes: &mut [Vec<Hypothesis>],
-        again: impl Fn(&mut Hypothesis, &FitData, Option<&FitData>) + Sync,
+        again: impl Fn(&mut Hypothesis, &FitProblem, Option<&FitProblem>) + Sync,
     ) {
         let (training, held_out) = self.cut(horizon);
         let models = [&self.base, &self.given].map(|hypothesis| {
@@ -234,7 +234,7 @@ mod tests {
     use crate::fitting::search_horizons;
 
     /// The motions of an arm, of whose samples one of so many is left.
-    fn thinned(one_of: usize) -> FitData {
+    fn thinned(one_of: usize) -> FitProblem {
         let mut bench = bench(Motions::Arm, 1, &["viscous"]).unwrap();
         for log in &mut bench.logs {
             let is_row = |line: &str| line.starts_with(|first: char| first.is_ascii_digit());
@@ -246,7 +246,7 @@ mod tests {
             log.csv = kept.map(|line| format!("{line}\n")).collect();
         }
         let (model, training, _) = recorded(&bench);
-        FitData::new(&model, training, Horizon::Whole)
+        FitProblem::new(&model, training, Horizon::Whole)
     }
 
     #[test]

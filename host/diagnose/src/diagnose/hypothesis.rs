@@ -3,8 +3,8 @@
 use super::block_errors::{AT_NOISE_FLOOR, BlockErrors};
 use super::budget::{EVALUATE, FINISH};
 use crate::fitting::{
-    Candidate, Fit, FitData, FitOptions, fit, fit_start_states, intervals, intervals_of, polish,
-    told_by_others,
+    Candidate, Fit, FitOptions, FitProblem, choose_by_other_motions, fit, fit_start_states,
+    intervals, intervals_of, polish,
 };
 use crate::model::{Model, ParameterPath};
 use std::cmp::Ordering;
@@ -112,7 +112,7 @@ impl Hypothesis {
         &self,
         candidate: Candidate,
         values: &[f64],
-        data: &FitData,
+        data: &FitProblem,
         options: FitOptions,
     ) -> Hypothesis {
         let mut model = self.search.model.clone();
@@ -128,7 +128,7 @@ impl Hypothesis {
     }
 
     /// Goes on fitting where an earlier, short fit stopped.
-    pub fn resume(&mut self, data: &FitData, options: FitOptions) {
+    pub fn resume(&mut self, data: &FitProblem, options: FitOptions) {
         self.search = self.search.resume(data, options);
         self.search_mean = self.search.residuals.mean_square();
     }
@@ -146,7 +146,7 @@ impl Hypothesis {
         &self,
         leaving: usize,
         base: &Hypothesis,
-        data: &FitData,
+        data: &FitProblem,
         iterations: usize,
     ) -> Hypothesis {
         let mut set = self.set.clone();
@@ -155,25 +155,34 @@ impl Hypothesis {
         model.effects.retain(|instance| !out.is(instance));
         let mut free = base.search.free.clone();
         free.extend(set.iter().flat_map(|c| c.paths().collect::<Vec<_>>()));
-        let (nodes, options) = (&self.search.nodes, FitOptions::iterations(iterations));
-        Hypothesis::new(set, fit(&model, &free, data, Some(nodes), options))
+        let (window_starts, options) = (
+            &self.search.window_starts,
+            FitOptions::iterations(iterations),
+        );
+        Hypothesis::new(set, fit(&model, &free, data, Some(window_starts), options))
     }
 
     /// Refits over the evaluation horizon from the values and start states found on the short
     /// windows, and predicts the held-out motions.
     pub fn evaluate(
         &mut self,
-        short: &FitData,
-        training: &FitData,
-        held_out: Option<&FitData>,
+        short: &FitProblem,
+        training: &FitProblem,
+        held_out: Option<&FitProblem>,
         options: FitOptions,
     ) {
         if self.evaluation.is_some() {
             return;
         }
         let search = &self.search;
-        let nodes = training.nodes_from(short, &search.nodes);
-        let mut fit = fit(&search.model, &search.free, training, Some(&nodes), options);
+        let window_starts = training.nodes_from(short, &search.window_starts);
+        let mut fit = fit(
+            &search.model,
+            &search.free,
+            training,
+            Some(&window_starts),
+            options,
+        );
         // What is only compared may do so on a stair and in steps that are too long.
         if !options.rough {
             fit = polish(fit, training, options);
@@ -184,20 +193,31 @@ impl Hypothesis {
 
     /// Evaluates it over longer windows, from the values and start states found in those `before`;
     /// nothing where it was not evaluated.
-    pub fn run_longer(&mut self, before: &FitData, training: &FitData, held_out: Option<&FitData>) {
+    pub fn run_longer(
+        &mut self,
+        before: &FitProblem,
+        training: &FitProblem,
+        held_out: Option<&FitProblem>,
+    ) {
         let Some(evaluation) = &self.evaluation else {
             return;
         };
         let found = &evaluation.fit;
-        let nodes = training.nodes_from(before, &found.nodes);
+        let window_starts = training.nodes_from(before, &found.window_starts);
         let options = FitOptions::iterations(EVALUATE);
-        let fit = fit(&found.model, &found.free, training, Some(&nodes), options);
+        let fit = fit(
+            &found.model,
+            &found.free,
+            training,
+            Some(&window_starts),
+            options,
+        );
         self.judge(polish(fit, training, options), training, held_out);
     }
 
     /// Takes steps of this length on the short windows too: what goes on from there should not
     /// explain what longer steps get wrong.
-    fn search_in_steps(&mut self, step_s: f64, short: &FitData) {
+    fn search_in_steps(&mut self, step_s: f64, short: &FitProblem) {
         if self.search.model.step_s == step_s {
             return;
         }
@@ -205,16 +225,22 @@ impl Hypothesis {
             step_s,
             ..self.search.model.clone()
         };
-        let (nodes, options) = (&self.search.nodes, FitOptions::iterations(FINISH));
-        self.search = fit(&model, &self.search.free, short, Some(nodes), options);
+        let (window_starts, options) = (&self.search.window_starts, FitOptions::iterations(FINISH));
+        self.search = fit(
+            &model,
+            &self.search.free,
+            short,
+            Some(window_starts),
+            options,
+        );
         self.search_mean = self.search.residuals.mean_square();
     }
 
     /// Takes a fit over the evaluation horizon, and predicts the held-out motions with it.
-    pub fn judge(&mut self, mut fit: Fit, training: &FitData, held_out: Option<&FitData>) {
+    pub fn judge(&mut self, mut fit: Fit, training: &FitProblem, held_out: Option<&FitProblem>) {
         let of_training = BlockErrors::of(&fit.residuals, training);
         if let Some(others) = held_out.filter(|_| of_training.is_noise()) {
-            fit = told_by_others(fit, training, others);
+            fit = choose_by_other_motions(fit, training, others);
         }
         let held_out = held_out
             .map(|data| BlockErrors::of(&fit_start_states(&fit.model, data).residuals, data));
@@ -247,7 +273,7 @@ impl Hypothesis {
 
     /// Root-mean-square error on the training motions, rad: over the evaluation horizon where it
     /// came that far.
-    pub fn training_rms_rad(&self, search: &FitData) -> f64 {
+    pub fn training_rms_rad(&self, search: &FitProblem) -> f64 {
         match &self.evaluation {
             Some(evaluation) => evaluation.training.rms_rad(),
             None => BlockErrors::of(&self.search.residuals, search).rms_rad(),
@@ -278,7 +304,7 @@ impl Hypothesis {
 
 /// Whether the interval of any value of an effect, the last one freed, is narrower than what the
 /// value may be at all.
-fn determined(effect: &Candidate, fit: &Fit, data: &FitData) -> bool {
+fn determined(effect: &Candidate, fit: &Fit, data: &FitProblem) -> bool {
     let parameters = effect.parameters();
     let Some((intervals, _)) = intervals(fit, data) else {
         return true;
@@ -295,7 +321,7 @@ fn determined(effect: &Candidate, fit: &Fit, data: &FitData) -> bool {
 /// where it vanishes. The values that only shape the effect are held: where it vanishes they say
 /// nothing, and where motions do not reach as far as they tell, all values of the effect may grow
 /// together.
-fn significant(set: &[Candidate], fit: &Fit, data: &FitData) -> bool {
+fn significant(set: &[Candidate], fit: &Fit, data: &FitProblem) -> bool {
     let added: usize = set.iter().map(|c| c.parameters().len()).sum();
     let mut first = fit.free.len() - added;
     set.iter().all(|candidate| {

@@ -1,7 +1,7 @@
 //! Fits of one model from random starts.
 
 use super::budget::{START_SAMPLES, STARTS};
-use crate::fitting::{Fit, FitData, FitOptions, fit};
+use crate::fitting::{Fit, FitOptions, FitProblem, fit};
 use crate::model::{Model, ParameterPath};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -50,7 +50,7 @@ impl Valleys {
 }
 
 /// The base model fitted; from several starts on few samples.
-pub(super) fn base_fit(model: &Model, data: &FitData, few: bool, seed: u64) -> Fit {
+pub(super) fn base_fit(model: &Model, data: &FitProblem, few: bool, seed: u64) -> Fit {
     let fitted = |start: &Model| fit(start, &model.free, data, None, FitOptions::default());
     let cost = |fit: &Fit| fit.residuals.cost();
     let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -8,12 +8,12 @@ use super::budget::JUDGING_STEPS;
 use super::conclusion::conclude;
 use super::consistency::OwnFits;
 use super::evaluator::{Evaluator, Reach, every_change};
-use super::explanation::{Explanation, Tried, VerdictEvidence};
+use super::explanation::{Explanation, SearchOutcome, VerdictEvidence};
 use super::findings::{Diagnosis, SearchEnded};
 use super::hypothesis::Hypothesis;
 use super::options::DiagnoseOptions;
 use super::progress::{Course, Stage};
-use super::search::Found;
+use super::search::SearchResults;
 use super::stability::folds;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, Progress, stated_from};
@@ -57,17 +57,17 @@ pub(super) fn diagnose_on(
         let (training, held_out) = (training.clone(), held_out.clone());
         Evaluator::new(&model, training, held_out, options, reach, course.clone())
     };
-    let mut found = Searched::by(evaluator(Reach::Promising));
+    let mut found = FinishedSearch::by(evaluator(Reach::Promising));
     if found.may_go_on() {
         let further = match found.evaluator.fork.take() {
             Some(fork) => {
                 let (evaluator, found) = *fork;
-                Ok(Searched::further(evaluator, found))
+                Ok(FinishedSearch::further(evaluator, found))
             }
             None => {
                 // The first one's evaluator stands, whatever becomes of this one.
                 let evaluator = course.halt.until(|| evaluator(Reach::Everything));
-                evaluator.map(Searched::by)
+                evaluator.map(FinishedSearch::by)
             }
         };
         found.take(further.ok());
@@ -76,21 +76,21 @@ pub(super) fn diagnose_on(
 }
 
 /// A search that was done, and what it tried.
-pub(super) struct Searched<'a> {
+pub(super) struct FinishedSearch<'a> {
     evaluator: Evaluator<'a>,
-    tried: Tried,
+    tried: SearchOutcome,
     ended: SearchEnded,
     /// What it did not try because it was ended.
     left_out: Vec<String>,
 }
 
-impl<'a> Searched<'a> {
+impl<'a> FinishedSearch<'a> {
     pub fn by(evaluator: Evaluator<'a>) -> Self {
-        Searched::further(evaluator, Found::default())
+        FinishedSearch::further(evaluator, SearchResults::default())
     }
 
     /// A search that goes on from what was found.
-    fn further(mut evaluator: Evaluator<'a>, mut found: Found) -> Self {
+    fn further(mut evaluator: Evaluator<'a>, mut found: SearchResults) -> Self {
         let course = evaluator.course.clone();
         course.keep_time();
         // What is ended before it begins has tried nothing.
@@ -101,14 +101,14 @@ impl<'a> Searched<'a> {
             evaluator.keep_evaluated(&mut found);
             left_out = found.not_tried(evaluator.most_effects);
         }
-        Searched {
+        FinishedSearch {
             ended: match (halted, found.is_tolerated) {
                 (true, _) if course.is_accepted() => SearchEnded::Stopped,
                 (true, _) => SearchEnded::Time,
                 (false, true) => SearchEnded::Tolerance,
                 (false, false) => SearchEnded::Complete,
             },
-            tried: Tried {
+            tried: SearchOutcome {
                 values: found.values,
                 values_refitted: found.values_refitted,
                 hypotheses: found.sizes.into_iter().flatten().collect(),
@@ -141,7 +141,7 @@ impl<'a> Searched<'a> {
 
     /// Takes what the second search found in place of what this one did where it explains all;
     /// `None` where it was ended before it began.
-    fn take(&mut self, further: Option<Searched<'a>>) {
+    fn take(&mut self, further: Option<FinishedSearch<'a>>) {
         match further {
             Some(further) if further.is_explained() => *self = further,
             Some(further) if further.ended == SearchEnded::Complete => {}
@@ -161,7 +161,7 @@ impl<'a> Searched<'a> {
 
     /// The diagnosis that what was found allows.
     fn judged(self, seed: u64) -> Diagnosis {
-        let Searched {
+        let FinishedSearch {
             evaluator,
             mut tried,
             ended,
@@ -231,7 +231,7 @@ const SECOND: &str = "the second search";
 impl Evaluator<'_> {
     /// Fits of the explanation to each motion by itself. Where values that one motion found suit
     /// all of them better than those found for all, the best set takes these.
-    fn tell_motions_apart(&self, tried: &mut Tried) -> Option<OwnFits> {
+    fn tell_motions_apart(&self, tried: &mut SearchOutcome) -> Option<OwnFits> {
         let explanation = tried.explanation(self);
         let own = OwnFits::of(explanation.hypothesis(), &self.training)?;
         if let Explanation::Effects(best) = explanation
@@ -246,7 +246,7 @@ impl Evaluator<'_> {
 
     /// Fits the best set, where it is the explanation, as exactly as its values are stated, from
     /// the values of the given model too.
-    fn settle(&self, tried: &mut Tried) {
+    fn settle(&self, tried: &mut SearchOutcome) {
         if let Explanation::Effects(best) = tried.explanation(self) {
             let mut best = best.clone();
             let found = best.fit().clone();

@@ -26,7 +26,7 @@ pub(super) enum ReplaceablePart {
 }
 
 /// An explanation with one part replaced, at the values that the derivatives promise.
-pub(super) struct Other {
+pub(super) struct Substitute {
     /// The effects added to the base.
     pub set: Vec<Candidate>,
     /// The values of the model file that take part.
@@ -50,10 +50,15 @@ impl ReplaceablePart {
 impl Evaluator<'_> {
     /// What may stand in for a part, the best first; `rest` is the explanation without it, with its
     /// derivatives. Nothing that brings more values, unless one factor changes all of them.
-    pub fn others(&self, chosen: &Hypothesis, part: &ReplaceablePart, rest: &Fit) -> Vec<Other> {
+    pub fn others(
+        &self,
+        chosen: &Hypothesis,
+        part: &ReplaceablePart,
+        rest: &Fit,
+    ) -> Vec<Substitute> {
         let made = rest.residuals.less(&chosen.search.residuals);
         let target = ProjectedResidual::of(rest, &made);
-        let local = self.little_of(chosen, part, rest);
+        let local = self.small_step_response(chosen, part, rest);
         let little = ProjectedResidual::of(&local.fit, &local.made);
         // So many times a little of the part is all of it.
         let all = (target.size() / little.size()).sqrt();
@@ -81,7 +86,7 @@ impl Evaluator<'_> {
             };
             let mut model = rest.model.clone();
             model.effects.push(candidate.instance(&values));
-            Some(Other {
+            Some(Substitute {
                 set: [&set[..], &[candidate]].concat(),
                 values: Vec::new(),
                 model,
@@ -106,7 +111,7 @@ impl Evaluator<'_> {
                 .sum::<usize>();
             // Those of the effects come last.
             let (base, own) = rest.free.split_at(rest.free.len() - added);
-            Some(Other {
+            Some(Substitute {
                 free: [base, &paths[..], own].concat(),
                 set: set.clone(),
                 values: paths,
@@ -114,7 +119,7 @@ impl Evaluator<'_> {
                 share,
             })
         });
-        let mut others: Vec<Other> = by_effects.chain(by_values).collect();
+        let mut others: Vec<Substitute> = by_effects.chain(by_values).collect();
         others.retain(|other| other.share >= LEAST_SHARE);
         others.sort_by(|a, b| b.share.total_cmp(&a.share));
         others
@@ -137,13 +142,18 @@ impl Evaluator<'_> {
 
     /// A small share of a part taken out where the explanation stands: there the derivatives of
     /// what is equal to the logs agree, however far the part has gone.
-    fn little_of(&self, chosen: &Hypothesis, part: &ReplaceablePart, rest: &Fit) -> Little {
-        let (model, nodes) = (&chosen.search.model, Some(&chosen.search.nodes[..]));
+    fn small_step_response(
+        &self,
+        chosen: &Hypothesis,
+        part: &ReplaceablePart,
+        rest: &Fit,
+    ) -> SmallStepResponse {
+        let (model, window_starts) = (&chosen.search.model, Some(&chosen.search.window_starts[..]));
         let fit = fit(
             model,
             &rest.free,
             &self.search,
-            nodes,
+            window_starts,
             FitOptions::iterations(0),
         );
         let mut model = fit.model.clone();
@@ -169,8 +179,8 @@ impl Evaluator<'_> {
                 }
             }
         }
-        let made = residuals(&model, &self.search, &fit.nodes).less(&fit.residuals);
-        Little { fit, made }
+        let made = residuals(&model, &self.search, &fit.window_starts).less(&fit.residuals);
+        SmallStepResponse { fit, made }
     }
 
     /// How far to move the values, several of them by one factor, to make most of the target, and
@@ -193,7 +203,7 @@ impl Evaluator<'_> {
             path.set(&mut model, value + step).then_some(())?;
             steps.push(step);
         }
-        let moved = residuals(&model, &self.search, &at.nodes);
+        let moved = residuals(&model, &self.search, &at.window_starts);
         let (weights, share) = target.span(&[at.residuals.less(&moved)])?;
         let weight = weights[0];
         Some((steps.into_iter().map(|step| weight * step).collect(), share))
@@ -201,7 +211,7 @@ impl Evaluator<'_> {
 }
 
 /// A small share of a part taken out of an explanation.
-struct Little {
+struct SmallStepResponse {
     /// The explanation where it stands, with the derivatives of the rest.
     fit: Fit,
     /// What the share changes in the prediction.
@@ -219,11 +229,14 @@ mod tests {
         let chosen = fitted(&evaluator, &[kind], [values]);
         let part = ReplaceablePart::Effect(chosen.set[0]);
         let (model, free) = evaluator.without(&chosen, &part);
-        let (nodes, options) = (Some(&chosen.search.nodes[..]), FitOptions::iterations(0));
-        let rest = fit(&model, &free, &evaluator.search, nodes, options);
+        let (window_starts, options) = (
+            Some(&chosen.search.window_starts[..]),
+            FitOptions::iterations(0),
+        );
+        let rest = fit(&model, &free, &evaluator.search, window_starts, options);
         let others = evaluator.others(&chosen, &part, &rest);
         assert!(others.iter().all(|other| other.share >= LEAST_SHARE));
-        let named = |other: &Other| match other.values.as_slice() {
+        let named = |other: &Substitute| match other.values.as_slice() {
             [] => other.set[0].to_string(),
             values => values[0].to_string(),
         };

@@ -11,7 +11,7 @@ use super::findings::ResidualStructure;
 use super::terms::{Term, terms};
 use crate::effects::ProbeVariable;
 use crate::fitting::{
-    Fit, FitData, FitOptions, Projector, Residuals, change, fit as refit, fit_start_states,
+    Fit, FitOptions, FitProblem, Projector, Residuals, change, fit as refit, fit_start_states,
 };
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -29,12 +29,19 @@ struct Linearised {
 }
 
 impl Linearised {
-    fn new(fit: &Fit, data: &FitData, terms: &[Term]) -> Linearised {
+    fn new(fit: &Fit, data: &FitProblem, terms: &[Term]) -> Linearised {
         let projector = Projector::off_start_states(fit);
         let before = &fit.residuals.windows;
         let column = |term: &Term| {
             let (candidate, values) = (term.candidate, &term.values);
-            let moved = change(&fit.model, candidate, values, data, &fit.nodes, before);
+            let moved = change(
+                &fit.model,
+                candidate,
+                values,
+                data,
+                &fit.window_starts,
+                before,
+            );
             flat(&projector.off(&moved))
         };
         Linearised {
@@ -48,8 +55,8 @@ impl Linearised {
 /// What is left to explain, judged on held-out motions; `None` with nothing left above the noise.
 pub(super) fn residual_structure(
     fit: &Fit,
-    training: &FitData,
-    held_out: &FitData,
+    training: &FitProblem,
+    held_out: &FitProblem,
     seed: u64,
 ) -> Option<ResidualStructure> {
     let settled = fit_start_states(&fit.model, held_out);
@@ -58,8 +65,8 @@ pub(super) fn residual_structure(
         return None;
     }
     // The fitted values on other motions, with the derivatives there.
-    let (nodes, options) = (Some(&settled.nodes[..]), FitOptions::iterations(0));
-    let elsewhere = refit(&fit.model, &fit.free, held_out, nodes, options);
+    let (window_starts, options) = (Some(&settled.window_starts[..]), FitOptions::iterations(0));
+    let elsewhere = refit(&fit.model, &fit.free, held_out, window_starts, options);
     let mut terms = terms(&fit.model, training);
     let mut seen = Linearised::new(fit, training, &terms);
     let mut unseen = Linearised::new(&elsewhere, held_out, &terms);

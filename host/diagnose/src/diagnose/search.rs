@@ -11,7 +11,7 @@ use super::budget::{
     VALUE_STEPS, larger_steps, singles_steps,
 };
 use super::evaluator::{Evaluator, Reach, every_change};
-use super::explanation::Tried;
+use super::explanation::SearchOutcome;
 use super::hypothesis::Hypothesis;
 use super::progress::Stage;
 use super::verdict::FAR_OFF;
@@ -22,13 +22,13 @@ use std::sync::Arc;
 mod found;
 mod partners;
 
-pub(super) use found::Found;
+pub(super) use found::SearchResults;
 use found::put_among;
 
 impl Evaluator<'_> {
     /// Looks for the smallest set that pays, if any does, and for a wrong value; keeps in `found`
     /// what it has, and goes on from there.
-    pub fn search(&mut self, found: &mut Found) {
+    pub fn search(&mut self, found: &mut SearchResults) {
         if found.sizes.is_empty() {
             if self.leaves_tolerated(found) && !self.at_noise_floor(&self.base) {
                 (found.is_tolerated, found.at) = (true, None);
@@ -65,7 +65,7 @@ impl Evaluator<'_> {
 
     /// Keeps where a search of everything would part from this one, if it would begin as this one
     /// did: all that was found until then it would find again.
-    fn fork_from(&mut self, found: &Found) {
+    fn fork_from(&mut self, found: &SearchResults) {
         let best = found.best.as_ref();
         let is_explained = best.is_some_and(|best| self.is_explained_by(best));
         if self.reach == Reach::Promising && self.follows_first && !is_explained {
@@ -74,7 +74,7 @@ impl Evaluator<'_> {
     }
 
     /// Tries every effect alone, then every value.
-    fn begin(&mut self, found: &mut Found) {
+    fn begin(&mut self, found: &mut SearchResults) {
         found.at = Some(Stage::Alone);
         let expected = singles_steps(self.candidates.len());
         self.say(Stage::Alone, expected);
@@ -91,7 +91,7 @@ impl Evaluator<'_> {
     }
 
     /// Goes on to sets of another size, and says so.
-    fn begin_size(&self, size: usize, found: &mut Found) {
+    fn begin_size(&self, size: usize, found: &mut SearchResults) {
         let stage = Stage::of_size(size);
         let beside = match self.reach {
             Reach::Promising => PARTNERS,
@@ -102,7 +102,7 @@ impl Evaluator<'_> {
     }
 
     /// Grows sets of another size; whether there are any.
-    fn go_to(&mut self, size: usize, found: &mut Found) -> bool {
+    fn go_to(&mut self, size: usize, found: &mut SearchResults) -> bool {
         self.begin_size(size, found);
         found.before = found.best.as_ref().map(|best| best.set.len());
         let larger = self.grow(&found.sizes[size - 2]);
@@ -120,7 +120,7 @@ impl Evaluator<'_> {
     }
 
     /// Evaluates values again that were evaluated over another horizon.
-    fn judge_values_again(&self, found: &mut Found) {
+    fn judge_values_again(&self, found: &mut SearchResults) {
         let values = found.values.iter_mut().chain(&mut found.values_refitted);
         let values = values.filter_map(|value| value.evaluation.take().map(|_| value));
         let values: Vec<&mut Hypothesis> = values.collect();
@@ -131,7 +131,7 @@ impl Evaluator<'_> {
 
     /// Tries the values of the model's file: hopeless is what single effects make so, and those
     /// that explain most.
-    fn search_values(&self, found: &mut Found) {
+    fn search_values(&self, found: &mut SearchResults) {
         found.at = Some(Stage::Values);
         self.say(Stage::Values, VALUE_STEPS);
         let least = found.best.as_ref().unwrap_or(&self.base).search_mean;
@@ -143,7 +143,7 @@ impl Evaluator<'_> {
 
     /// Whether there is nothing left to look for beside the best set, or the base model; nothing is
     /// where the user tolerates what is left.
-    fn is_done(&self, found: &mut Found) -> bool {
+    fn is_done(&self, found: &mut SearchResults) -> bool {
         let best = found.best.as_ref();
         let is_explained = match (best, self.reach) {
             (Some(best), Reach::Everything) => self.is_explained_by(best),
@@ -154,9 +154,9 @@ impl Evaluator<'_> {
     }
 
     /// Whether the user asks for no less error than the explanation leaves that was found.
-    fn leaves_tolerated(&self, found: &Found) -> bool {
+    fn leaves_tolerated(&self, found: &SearchResults) -> bool {
         self.tolerance_rad.is_some_and(|tolerance_rad| {
-            let tried = Tried {
+            let tried = SearchOutcome {
                 values: found.values.clone(),
                 values_refitted: found.values_refitted.clone(),
                 best: found.best.clone(),
@@ -186,7 +186,7 @@ impl Evaluator<'_> {
     /// Takes each effect out of the smallest set that pays, and out of the best of every size that
     /// leaves less than all smaller ones: what helped another out of a false valley is not missing
     /// itself. Then the smallest that pays is the best.
-    fn prune(&self, found: &mut Found) {
+    fn prune(&self, found: &mut SearchResults) {
         loop {
             found.best = self.smallest_that_pays(&found.sizes);
             let whole = found
@@ -219,7 +219,7 @@ impl Evaluator<'_> {
 
     /// Looks further for sets of the largest size, where the best leaves something to explain: every
     /// candidate, or, where sets of that size bring nothing over the effects of the best smaller one, those that promise most beside it.
-    fn grow_further(&mut self, found: &mut Found) {
+    fn grow_further(&mut self, found: &mut SearchResults) {
         let [.., smaller, larger] = &mut found.sizes[..] else {
             return;
         };

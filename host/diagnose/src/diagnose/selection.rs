@@ -5,7 +5,7 @@ use super::block_errors::{
 };
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
-use crate::fitting::{Fit, FitData};
+use crate::fitting::{Fit, FitProblem};
 
 /// A hypothesis that leaves up to this much more of the squared error may be as good.
 const NEAR: f64 = 1.1;
@@ -37,7 +37,7 @@ impl Gate {
 
 /// How far an explanation lies behind the best, in log-likelihood.
 #[derive(Debug, Clone, Copy)]
-struct Behind {
+struct LikelihoodDeficit {
     /// Whether chance does not account for it.
     significant: bool,
     /// Whether the best leaves nothing but noise.
@@ -50,7 +50,7 @@ struct Behind {
     unexplained: f64,
 }
 
-impl Behind {
+impl LikelihoodDeficit {
     fn is_clear(self) -> bool {
         let counts = self.at_noise_floor || self.lost > self.unexplained.min(0.1 * self.gained);
         self.significant && counts
@@ -119,7 +119,7 @@ impl Evaluator<'_> {
         else {
             return true;
         };
-        let behind = Behind {
+        let behind = LikelihoodDeficit {
             significant: significantly_worse(&worse, &better, self.seed),
             at_noise_floor: self.at_noise_floor(best),
             lost: gain(&paired(&worse, &better)),
@@ -156,7 +156,7 @@ pub(super) fn effective_share(errors: &BlockErrors, fit: &Fit) -> f64 {
 }
 
 /// The same share for a fit to these data.
-pub(crate) fn independent_share(fit: &Fit, data: &FitData) -> f64 {
+pub(crate) fn independent_share(fit: &Fit, data: &FitProblem) -> f64 {
     effective_share(&BlockErrors::of(&fit.residuals, data), fit)
 }
 
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_difference_counts_by_what_is_left_and_what_was_gained() {
-        let behind = Behind {
+        let behind = LikelihoodDeficit {
             significant: true,
             at_noise_floor: true,
             lost: 1.0,
@@ -225,13 +225,13 @@ mod tests {
             unexplained: 2000.0,
         };
         assert!(behind.is_clear());
-        let chance = Behind {
+        let chance = LikelihoodDeficit {
             significant: false,
             ..behind
         };
         assert!(!chance.is_clear());
         // Something else is missing, too: a tenth of what was gained is the least that counts ...
-        let above = |lost, unexplained| Behind {
+        let above = |lost, unexplained| LikelihoodDeficit {
             at_noise_floor: false,
             lost,
             unexplained,

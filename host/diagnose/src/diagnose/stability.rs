@@ -10,7 +10,7 @@ use super::evaluator::Evaluator;
 use super::findings::Fold;
 use super::hypothesis::Hypothesis;
 use super::verdict::MOST_RAISED;
-use crate::fitting::{FitData, FitOptions, fit, fit_start_states};
+use crate::fitting::{FitOptions, FitProblem, fit, fit_start_states};
 use rayon::prelude::*;
 
 /// Most folds.
@@ -75,7 +75,7 @@ pub(super) fn warning(folds: &[Fold]) -> Option<String> {
     })
 }
 
-fn names(data: &FitData) -> Vec<String> {
+fn names(data: &FitProblem) -> Vec<String> {
     data.motions
         .iter()
         .map(|motion| motion.name.clone())

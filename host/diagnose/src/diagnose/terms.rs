@@ -3,7 +3,7 @@
 
 use crate::effects::ProbeVariable;
 use crate::fitting::Candidate;
-use crate::fitting::FitData;
+use crate::fitting::FitProblem;
 use crate::model::{Drive, Link, MeasuredSignal, Model};
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ pub(super) struct Term {
 }
 
 /// The probes of every joint, scaled to the range its motions cover.
-pub(super) fn terms(model: &Model, data: &FitData) -> Vec<Term> {
+pub(super) fn terms(model: &Model, data: &FitProblem) -> Vec<Term> {
     let mut terms = Vec::new();
     for joint in 0..model.link_count() {
         let range = Range::of(model, data, joint);
@@ -95,7 +95,7 @@ struct Range {
 }
 
 impl Range {
-    fn of(model: &Model, data: &FitData, joint: usize) -> Range {
+    fn of(model: &Model, data: &FitProblem, joint: usize) -> Range {
         let measured = || {
             let positions = data.motions.iter().flat_map(|m| &m.position_rad[joint]);
             positions.copied().filter(|angle| angle.is_finite())

@@ -6,7 +6,7 @@ use super::evaluator::Evaluator;
 use super::findings::WrongValue;
 use super::first_look::best_third;
 use super::hypothesis::Hypothesis;
-use crate::fitting::{Fit, FitData, FitOptions, FittedValue, fit, intervals};
+use crate::fitting::{Fit, FitOptions, FitProblem, FittedValue, fit, intervals};
 use crate::model::{JointField, LinkField, Model, ParameterPath};
 use rayon::prelude::*;
 
@@ -94,7 +94,7 @@ impl Evaluator<'_> {
 }
 
 /// The model as given, nothing fitted but start states.
-pub(super) fn as_given(model: &Model, search: &FitData) -> Hypothesis {
+pub(super) fn as_given(model: &Model, search: &FitProblem) -> Hypothesis {
     let options = FitOptions::iterations(LOOK);
     Hypothesis::new(Vec::new(), fit(model, &[], search, None, options))
 }
@@ -147,7 +147,11 @@ pub(super) fn kinds_of_values(model: &Model) -> Vec<Vec<ParameterPath>> {
 }
 
 /// Addresses of those of a fit's values that contradict the given model.
-pub(super) fn contradicted_paths(given: &Model, fit: &Fit, data: &FitData) -> Vec<ParameterPath> {
+pub(super) fn contradicted_paths(
+    given: &Model,
+    fit: &Fit,
+    data: &FitProblem,
+) -> Vec<ParameterPath> {
     let Some((intervals, _)) = intervals(fit, data) else {
         return Vec::new();
     };

@@ -1,7 +1,7 @@
 //! The error of a model along a whole log.
 
 use crate::error::Result;
-use crate::fitting::{FitData, Horizon, fit_start_states};
+use crate::fitting::{FitProblem, Horizon, fit_start_states};
 use crate::log::{LogRequest, read};
 use crate::model::Model;
 use std::path::Path;
@@ -12,6 +12,6 @@ use std::path::Path;
 /// Those of reading the log.
 pub fn whole_error_rad(model: &Model, log: &Path) -> Result<f64> {
     let motions = read(&[LogRequest::whole(log.to_path_buf())], &model.log)?;
-    let data = FitData::new(model, motions, Horizon::Whole);
+    let data = FitProblem::new(model, motions, Horizon::Whole);
     Ok(fit_start_states(model, &data).rms(&data))
 }

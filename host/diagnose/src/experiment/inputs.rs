@@ -7,7 +7,7 @@ use crate::dynamics::EquationsOfMotion;
 use crate::experiment::excite::Excitation;
 use crate::model::{Drive, Model, hanging};
 use crate::motion::Motion;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, PlantMemory, StartState, predict};
 
 /// Stiffness and damping of the regulator per inertia: 1/s^2 and 1/s.
 const STIFFNESS: f64 = 130.0;
@@ -56,7 +56,7 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
     let plant = Plant::new(model, &motion).read_on_time();
     let regulator = GoalRegulator::new(model, &motion, limits);
     let mut state = at_rest(&plant, &start_rad);
-    let mut memory = Memory::default();
+    let mut memory = PlantMemory::default();
     let mut readings = vec![0.0; 2 * plant.signals()];
     for k in 0..motion.len() {
         let angles = regulator.pose(&plant, &state, &driven, &goals.excitation.angle_rad[k]);
@@ -94,8 +94,8 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
 }
 
 /// A simulation's start at rest at these readings, rad in the log's convention.
-pub(super) fn at_rest(plant: &Plant, reading_rad: &[f64]) -> Start {
-    Start {
+pub(super) fn at_rest(plant: &Plant, reading_rad: &[f64]) -> StartState {
+    StartState {
         angle_rad: plant.decode_rad(reading_rad),
         speed_rad_s: vec![0.0; reading_rad.len()],
         reading_slope: None,
@@ -123,7 +123,7 @@ impl<'a> GoalRegulator<'a> {
     }
 
     /// Angles of all joints from the link before, rad: the driven ones at their goals.
-    fn pose(&self, plant: &Plant, state: &Start, driven: &[usize], goals: &[f64]) -> Vec<f64> {
+    fn pose(&self, plant: &Plant, state: &StartState, driven: &[usize], goals: &[f64]) -> Vec<f64> {
         let joints = 0..self.model.link_count();
         let mut reading: Vec<f64> = joints.map(|j| plant.reading(j, state).0).collect();
         for (&joint, &goal) in driven.iter().zip(goals) {
@@ -136,7 +136,7 @@ impl<'a> GoalRegulator<'a> {
     fn sent(
         &self,
         plant: &Plant,
-        state: &Start,
+        state: &StartState,
         pose_rad: &[f64],
         joint: usize,
         (goal_rad, rate_rad_s): (f64, f64),

@@ -3,10 +3,10 @@
 use super::candidates::Experiment;
 use super::inputs::at_rest;
 use super::limits::signal;
-use crate::fitting::{FitData, Horizon};
+use crate::fitting::{FitProblem, Horizon};
 use crate::model::{MeasuredSignal, Model};
 use crate::motion::Motion;
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, PlantMemory, predict};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -18,7 +18,7 @@ pub(super) fn predicted_motion(model: &Model, experiment: &Experiment) -> Motion
     let start = at_rest(&plant, &experiment.start_rad);
     let count = motion.len();
     let mut readings = vec![0.0; count * plant.signals()];
-    let mut memory = Memory::default();
+    let mut memory = PlantMemory::default();
     predict(
         &plant,
         &motion,
@@ -48,18 +48,18 @@ pub(super) fn predicted_motion(model: &Model, experiment: &Experiment) -> Motion
 pub(super) fn as_data(
     model: &Model,
     motion: Motion,
-    logs: &FitData,
+    logs: &FitProblem,
     horizon: Horizon,
     seed: u64,
-) -> FitData {
+) -> FitProblem {
     // How long windows may be depends on the noise; what is compared has none.
     let noisy = with_noise(&motion, logs, seed);
-    let data = FitData::new(model, vec![noisy], horizon).weighted_like(logs);
+    let data = FitProblem::new(model, vec![noisy], horizon).weighted_like(logs);
     data.measured_in(vec![motion])
 }
 
 /// White noise as large as that of the logs on everything that is measured.
-fn with_noise(motion: &Motion, logs: &FitData, seed: u64) -> Motion {
+fn with_noise(motion: &Motion, logs: &FitProblem, seed: u64) -> Motion {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut noisy = motion.clone();
     for (signal, sigma) in logs.sigma.iter().enumerate() {

@@ -12,7 +12,7 @@ use super::separation::{Separations, by_derivatives, by_fits, pairs};
 use super::tighten::{Criterion, tightened};
 use crate::diagnose::{Diagnosis, Verdict, how_to_measure};
 use crate::error::Result;
-use crate::fitting::{FitData, Horizon};
+use crate::fitting::{FitProblem, Horizon};
 use crate::model::{Model, ParameterPath};
 use crate::motion::Motion;
 use rayon::prelude::*;
@@ -56,7 +56,7 @@ pub fn propose(
 ) -> Result<ExperimentProposal> {
     let horizon = Horizon::from_seconds(diagnosis.horizon_s);
     let model = with_payload_place(model);
-    let logs = FitData::new(&model, motions, horizon);
+    let logs = FitProblem::new(&model, motions, horizon);
     let rivals = rivals(&model, diagnosis, &logs);
     let verdict = Some(diagnosis.verdict);
     match (diagnosis.verdict, rivals.as_slice()) {
@@ -94,7 +94,7 @@ pub fn propose_values(
     options: &ProposeOptions,
 ) -> Result<ExperimentProposal> {
     let model = with_payload_place(model);
-    let logs = FitData::new(&model, motions, horizon);
+    let logs = FitProblem::new(&model, motions, horizon);
     let mut free = values.to_vec();
     free.extend(model.free.iter().filter(|path| !values.contains(path)));
     let rival = Rival::fitted(RivalName::of(&[], &[]), &model, &free, &logs);
@@ -125,7 +125,7 @@ pub(super) fn all_experiments(rival: &Rival, options: &ProposeOptions) -> Result
 /// The experiment that puts the closest two rivals farthest apart, of those that any can part.
 pub(super) fn parted(
     rivals: &[Rival],
-    logs: &FitData,
+    logs: &FitProblem,
     horizon: Horizon,
     options: &ProposeOptions,
 ) -> Result<ExperimentProposal> {

@@ -2,7 +2,7 @@
 
 use super::proposal::RivalName;
 use crate::diagnose::{Diagnosis, FittedEffect, WrongValue, independent_share, values_behind};
-use crate::fitting::{Fit, FitData, FitOptions, FittedValue, fit};
+use crate::fitting::{Fit, FitOptions, FitProblem, FittedValue, fit};
 use crate::model::{Model, ParameterPath};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -24,7 +24,12 @@ pub(super) struct Rival {
 
 impl Rival {
     /// A model with these values free, fitted to the logs.
-    pub fn fitted(name: RivalName, model: &Model, free: &[ParameterPath], logs: &FitData) -> Rival {
+    pub fn fitted(
+        name: RivalName,
+        model: &Model,
+        free: &[ParameterPath],
+        logs: &FitProblem,
+    ) -> Rival {
         let fit = fit(model, free, logs, None, FitOptions::iterations(ITERATIONS));
         Rival {
             measurable: name.values.clone(),
@@ -37,7 +42,7 @@ impl Rival {
 }
 
 /// The explanation of a diagnosis, then the alternatives that say something else.
-pub(super) fn rivals(model: &Model, diagnosis: &Diagnosis, logs: &FitData) -> Vec<Rival> {
+pub(super) fn rivals(model: &Model, diagnosis: &Diagnosis, logs: &FitProblem) -> Vec<Rival> {
     let own = (&diagnosis.effects, &diagnosis.wrong_values);
     let others = diagnosis
         .alternatives

@@ -4,7 +4,7 @@ use super::candidates::Experiment;
 use super::limits::ExperimentLimits;
 use super::prediction::{as_data, predicted_motion};
 use super::rival::Rival;
-use crate::fitting::{Fit, FitData, FitOptions, Horizon, fit};
+use crate::fitting::{Fit, FitOptions, FitProblem, Horizon, fit};
 use rayon::prelude::*;
 
 /// Iterations of a fit of start states.
@@ -29,7 +29,7 @@ pub(super) fn pairs(rivals: usize) -> Vec<(usize, usize)> {
 /// An experiment as one rival predicts it.
 struct Prediction {
     /// Without noise.
-    data: FitData,
+    data: FitProblem,
     /// The rival's own start states fitted to it: what that leaves is no separation. Where dry
     /// friction holds at the start, it is not nothing.
     own: Fit,
@@ -40,7 +40,7 @@ fn predictions(
     rivals: &[Rival],
     experiment: &Experiment,
     limits: &ExperimentLimits,
-    logs: &FitData,
+    logs: &FitProblem,
     horizon: Horizon,
 ) -> Option<Vec<Prediction>> {
     let motions = rivals.iter().map(|rival| {
@@ -64,14 +64,20 @@ pub(super) fn by_derivatives(
     rivals: &[Rival],
     experiment: &Experiment,
     limits: &ExperimentLimits,
-    logs: &FitData,
+    logs: &FitProblem,
     horizon: Horizon,
 ) -> Option<Separations> {
     let predictions = predictions(rivals, experiment, limits, logs, horizon)?;
     let squared = |truth: usize, other: usize| {
         let (rival, Prediction { data, own }) = (&rivals[other], &predictions[truth]);
-        let (nodes, options) = (Some(&own.nodes[..]), FitOptions::iterations(0));
-        let at = fit(&rival.fit.model, &rival.fit.free, data, nodes, options);
+        let (window_starts, options) = (Some(&own.window_starts[..]), FitOptions::iterations(0));
+        let at = fit(
+            &rival.fit.model,
+            &rival.fit.free,
+            data,
+            window_starts,
+            options,
+        );
         let left = at.information().cost_left(&rival.known) - own.information().cost;
         rival.share * left.max(0.0)
     };
@@ -83,16 +89,22 @@ pub(super) fn by_fits(
     rivals: &[Rival],
     experiment: &Experiment,
     limits: &ExperimentLimits,
-    logs: &FitData,
+    logs: &FitProblem,
     horizon: Horizon,
 ) -> Option<Separations> {
     let predictions = predictions(rivals, experiment, limits, logs, horizon)?;
     let squared = |truth: usize, other: usize| {
         let (rival, Prediction { data, own }) = (&rivals[other], &predictions[truth]);
-        let nodes = [&rival.fit.nodes[..], &own.nodes].concat();
+        let window_starts = [&rival.fit.window_starts[..], &own.window_starts].concat();
         let options = FitOptions::iterations(CONFIRM).rough();
         let (model, free) = (&rival.fit.model, &rival.fit.free);
-        let found = fit(model, free, &logs.joined(data), Some(&nodes), options);
+        let found = fit(
+            model,
+            free,
+            &logs.joined(data),
+            Some(&window_starts),
+            options,
+        );
         let alone = rival.fit.residuals.cost() + own.residuals.cost();
         rival.share * (found.residuals.cost() - alone).max(0.0)
     };

@@ -8,10 +8,10 @@ use super::propose::{ProposeOptions, parted, propose_values};
 use super::rival::Rival;
 use super::tighten::Criterion;
 use crate::effects;
-use crate::fitting::{Candidate, FitData, Horizon};
+use crate::fitting::{Candidate, FitProblem, Horizon};
 use crate::model::{Model, ParameterPath};
 use crate::motion::Motion;
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, PlantMemory, predict};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -84,7 +84,7 @@ fn swing(model: &Model) -> Motion {
     let plant = Plant::new(model, &motion);
     let mut readings = vec![0.0; motion.len()];
     let start = at_rest(&plant, &[0.0]);
-    let (all, memory) = (0..motion.len(), &mut Memory::default());
+    let (all, memory) = (0..motion.len(), &mut PlantMemory::default());
     predict(&plant, &motion, all, &start, memory, &mut readings);
     motion.position_rad[0] = readings
         .iter()
@@ -93,7 +93,7 @@ fn swing(model: &Model) -> Motion {
     motion
 }
 
-fn options(logs: &FitData, mass_kg: Option<f64>) -> ProposeOptions {
+fn options(logs: &FitProblem, mass_kg: Option<f64>) -> ProposeOptions {
     ProposeOptions {
         limits: ExperimentLimits {
             low_rad: vec![-1.3],
@@ -109,7 +109,7 @@ fn options(logs: &FitData, mass_kg: Option<f64>) -> ProposeOptions {
 
 /// What is proposed where these are left, the first being true.
 fn proposal(left: &[(Model, Vec<ParameterPath>)], mass_kg: Option<f64>) -> ExperimentProposal {
-    let logs = FitData::new(&left[0].0, vec![swing(&left[0].0)], Horizon::Whole);
+    let logs = FitProblem::new(&left[0].0, vec![swing(&left[0].0)], Horizon::Whole);
     let rivals = left.iter().map(|(model, free)| {
         let added: Vec<String> = free[2..].iter().map(ToString::to_string).collect();
         let name = RivalName {
@@ -169,7 +169,7 @@ fn no_motion_parts_a_rotor_from_the_inertia_of_the_link() {
 fn a_value_gets_tighter_where_it_shows_most() {
     let model = arm();
     let motions = vec![swing(&model)];
-    let logs = FitData::new(&model, motions.clone(), Horizon::Whole);
+    let logs = FitProblem::new(&model, motions.clone(), Horizon::Whole);
     let value: ParameterPath = "viscous@1.coefficient_nm_s_rad".parse().unwrap();
     let options = options(&logs, None);
     let found = propose_values(&model, &[value], motions, Horizon::Whole, &options).unwrap();
@@ -186,7 +186,7 @@ fn a_value_gets_tighter_where_it_shows_most() {
 #[test]
 fn no_explanation_leaves_the_limits() {
     let left = [with("mass", &[0.05]), with("torque_scale", &[0.83])];
-    let logs = FitData::new(&left[0].0, vec![swing(&left[0].0)], Horizon::Whole);
+    let logs = FitProblem::new(&left[0].0, vec![swing(&left[0].0)], Horizon::Whole);
     let mut narrow = options(&logs, None);
     narrow.limits.speed_rad_s = vec![1e-3];
     let rivals: Vec<Rival> = left

@@ -7,7 +7,7 @@ use super::proposal::{ExperimentProposal, TightenedValue};
 use super::propose::{ProposeOptions, all_experiments, nothing, proposed};
 use super::rival::Rival;
 use crate::error::Result;
-use crate::fitting::{FitData, FitOptions, Horizon, fit, intervals};
+use crate::fitting::{FitOptions, FitProblem, Horizon, fit, intervals};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -27,7 +27,7 @@ fn covariance_with(
     rival: &Rival,
     experiment: &Experiment,
     limits: &ExperimentLimits,
-    logs: &FitData,
+    logs: &FitProblem,
     horizon: Horizon,
 ) -> Option<DMatrix<f64>> {
     let model = &rival.fit.model;
@@ -73,7 +73,7 @@ impl Criterion {
 pub(super) fn tightened(
     rival: &Rival,
     places: &[usize],
-    logs: &FitData,
+    logs: &FitProblem,
     horizon: Horizon,
     options: &ProposeOptions,
 ) -> Result<ExperimentProposal> {
@@ -106,7 +106,7 @@ pub(super) fn tightened(
 fn tighter(
     rival: &Rival,
     places: &[usize],
-    logs: &FitData,
+    logs: &FitProblem,
     before: &DMatrix<f64>,
     after: &DMatrix<f64>,
 ) -> Vec<TightenedValue> {

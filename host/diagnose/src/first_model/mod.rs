@@ -16,7 +16,7 @@ mod values;
 
 use crate::error::Result;
 use crate::fitting::{
-    Fit, FitData, FitOptions, Horizon, Progress, StopSwitch, best_fit, coarsened, fit,
+    Fit, FitOptions, FitProblem, Horizon, Progress, StopSwitch, best_fit, coarsened, fit,
 };
 use crate::log::init::{Draft, Estimate};
 use crate::log::{LogRequest, read};
@@ -195,9 +195,9 @@ fn write_down(draft: &mut Draft, drafted: &Model, settled: Settled) {
     }
 }
 
-fn windows(model: &Model, motions: Vec<Motion>, seconds: f64) -> FitData {
+fn windows(model: &Model, motions: Vec<Motion>, seconds: f64) -> FitProblem {
     let horizon = Horizon::Seconds(seconds);
-    FitData::new(model, motions, horizon).cut_evenly(horizon)
+    FitProblem::new(model, motions, horizon).cut_evenly(horizon)
 }
 
 /// The meaning of the log that a rough fit explains best; the drafted one unless another is clearly
@@ -264,7 +264,7 @@ fn cost(fit: &Fit) -> f64 {
 }
 
 /// Whether some joint moves beyond its noise.
-fn moves(data: &FitData) -> bool {
+fn moves(data: &FitProblem) -> bool {
     (0..data.joints()).any(|joint| {
         let values = || {
             let motions = 0..data.motions.len();

@@ -3,7 +3,7 @@
 
 use super::values::{VISCOUS_NM_S_RAD, is_friction};
 use super::{ON, fit};
-use crate::fitting::FitData;
+use crate::fitting::FitProblem;
 use crate::fitting::{Fit, FitOptions};
 use crate::fitting::{Interval, intervals};
 use crate::model::{EffectInstance, LinkField, Model, ParameterPath};
@@ -32,7 +32,7 @@ pub(super) struct Settled {
 /// Tells what a log determines from what it does not.
 pub(super) struct Settling<'a> {
     pub drafted: &'a Model,
-    pub data: &'a FitData,
+    pub data: &'a FitProblem,
     pub mass_is_known: bool,
 }
 

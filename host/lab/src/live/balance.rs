@@ -60,7 +60,7 @@ pub fn run(
         return Ok("not agreed to: nothing was moved".into());
     }
     robot.keep_emergency_off(balancer.emergency_off());
-    let mut watch = Watch {
+    let mut watch = LiveObserver {
         robot,
         pose: LinkPose::new(model, &access.ids),
         sender: Sender::new(robot.samples().clone()),
@@ -127,7 +127,7 @@ fn prepares(robot: &LiveRobot, what: &str) {
 }
 
 /// Sends what it is told to pages, and writes it down.
-struct Watch<'a> {
+struct LiveObserver<'a> {
     robot: &'a LiveRobot,
     pose: LinkPose<'a>,
     sender: Sender,
@@ -137,7 +137,7 @@ struct Watch<'a> {
     told: String,
 }
 
-impl Watch<'_> {
+impl LiveObserver<'_> {
     fn hear(
         &mut self,
         what: String,
@@ -164,7 +164,7 @@ impl Watch<'_> {
     }
 }
 
-impl BalanceWatch for Watch<'_> {
+impl BalanceWatch for LiveObserver<'_> {
     fn counts_down(&mut self, left_s: f64, at: (&RobotSample, &BalanceStatus)) -> Result<bool> {
         self.hear(
             format!("torque in {:.0} s: hold the robot", left_s.ceil()),

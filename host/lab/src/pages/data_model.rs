@@ -65,13 +65,13 @@ fn columns(names: &[String], model: &Model) -> Markup {
                 thead { tr { th { "Quantity" } th { "Column" } th { "Unit" } th { "Reversed" } th {
                     "Zero: add, SI" } } }
                 tbody {
-                    (column(names, "time", "Time", Some(Picked::One(&log.time)), Dimension::Time,
+                    (column(names, "time", "Time", Some(QuantitySource::One(&log.time)), Dimension::Time,
                         true))
                     @for (index, joint) in log.joints.iter().enumerate() {
                         @let number = index + 1;
                         (column(names, &format!("joint{number}.position"),
                             &format!("Angle of joint {number}"),
-                            joint.position.as_ref().map(Picked::of),
+                            joint.position.as_ref().map(QuantitySource::of),
                             Dimension::Angle.on(model.joints[index].axis()), false))
                         @if let Some(dimension) =
                             Dimension::of_input(
@@ -80,20 +80,20 @@ fn columns(names: &[String], model: &Model) -> Markup {
                             ) {
                             (column(names, &format!("joint{number}.input"),
                                 &format!("Input of joint {number}"),
-                                joint.input.as_ref().map(Picked::of), dimension, true))
+                                joint.input.as_ref().map(QuantitySource::of), dimension, true))
                         }
                         (column(names, &format!("joint{number}.velocity"),
                             &format!("Speed of joint {number}"),
-                            joint.velocity.as_ref().map(Picked::of),
+                            joint.velocity.as_ref().map(QuantitySource::of),
                             Dimension::Speed.on(model.joints[index].axis()), false))
                         @if model.joints[index].slide.is_none() {
                             @let sensor = joint.rate_sensor.key();
                             (column(names, &format!("joint{number}.{sensor}"),
                                 &format!("Own {sensor} of joint {number}"),
-                                joint.rate.as_ref().map(Picked::of), Dimension::Speed, false))
+                                joint.rate.as_ref().map(QuantitySource::of), Dimension::Speed, false))
                         }
                     }
-                    (column(names, "supply", "Supply voltage", log.supply.as_ref().map(Picked::One),
+                    (column(names, "supply", "Supply voltage", log.supply.as_ref().map(QuantitySource::One),
                         Dimension::Voltage, false))
                 }
             } }
@@ -104,17 +104,17 @@ fn columns(names: &[String], model: &Model) -> Markup {
 
 /// What a model takes a quantity from.
 #[derive(Clone, Copy)]
-enum Picked<'a> {
+enum QuantitySource<'a> {
     One(&'a Column),
     /// The mean of several, which the model's text names.
     Mean(&'a ColumnMean),
 }
 
-impl<'a> Picked<'a> {
+impl<'a> QuantitySource<'a> {
     fn of(mean: &'a ColumnMean) -> Self {
         match mean.columns() {
-            [one] => Picked::One(one),
-            _ => Picked::Mean(mean),
+            [one] => QuantitySource::One(one),
+            _ => QuantitySource::Mean(mean),
         }
     }
 }
@@ -123,15 +123,15 @@ fn column(
     names: &[String],
     quantity: &str,
     title: &str,
-    picked: Option<Picked>,
+    picked: Option<QuantitySource>,
     dimension: Dimension,
     required: bool,
 ) -> Markup {
     let column = match picked {
-        Some(Picked::Mean(mean)) => {
+        Some(QuantitySource::Mean(mean)) => {
             return html! { tr { td { (title) } td colspan="4" { "the mean of " (mean.name()) } } };
         }
-        Some(Picked::One(column)) => Some(column),
+        Some(QuantitySource::One(column)) => Some(column),
         None => None,
     };
     let name = column.map(|column| column.name.as_str());

@@ -76,7 +76,7 @@ pub(super) async fn diagnose(
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Names {
+pub(super) struct EffectNames {
     /// Addresses between `+`.
     names: String,
     /// Bounds of values that are fitted.
@@ -84,7 +84,7 @@ pub(super) struct Names {
     bounds: Vec<ChosenBounds>,
 }
 
-impl Names {
+impl EffectNames {
     fn list(&self) -> Vec<String> {
         let names = self.names.split('+').map(str::trim);
         names
@@ -99,7 +99,7 @@ pub(super) async fn add(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
     shown: ShownModel,
-    Json(names): Json<Names>,
+    Json(names): Json<EffectNames>,
 ) -> Answer {
     let list = names.list();
     begin(
@@ -116,7 +116,7 @@ pub(super) async fn fit(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
     shown: ShownModel,
-    Json(names): Json<Names>,
+    Json(names): Json<EffectNames>,
 ) -> Answer {
     let list = names.list();
     let saved = session(&lab, number)?.saved();

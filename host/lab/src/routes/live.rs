@@ -57,7 +57,7 @@ fn event(name: &str, value: &impl Serialize) -> Result<Event, Infallible> {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Begun {
+pub(super) struct RunRequest {
     /// Number of the page that asks, as the first event says it.
     viewer: u64,
     task: LiveTask,
@@ -67,7 +67,7 @@ pub(super) struct Begun {
 pub(super) async fn begin(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
-    Json(asked): Json<Begun>,
+    Json(asked): Json<RunRequest>,
 ) -> Answer {
     let robot = robot(&lab, number)?;
     let session = session(&lab, number)?;
@@ -81,7 +81,7 @@ pub(super) async fn begin(
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Said {
+pub(super) struct ConsentReply {
     viewer: u64,
     yes: bool,
 }
@@ -90,7 +90,7 @@ pub(super) struct Said {
 pub(super) async fn answer(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
-    Json(said): Json<Said>,
+    Json(said): Json<ConsentReply>,
 ) -> Answer {
     if robot(&lab, number)?.answer(said.viewer, said.yes) {
         Ok(reply(&json!({ "answered": said.yes })))
@@ -102,7 +102,7 @@ pub(super) async fn answer(
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Present {
+pub(super) struct Heartbeat {
     viewer: u64,
 }
 
@@ -110,7 +110,7 @@ pub(super) struct Present {
 pub(super) async fn here(
     State(lab): State<Arc<LabState>>,
     Path(number): Path<u32>,
-    Json(page): Json<Present>,
+    Json(page): Json<Heartbeat>,
 ) -> Answer {
     robot(&lab, number)?.is_here(page.viewer);
     Ok(reply(&json!({})))

@@ -106,7 +106,7 @@ pub(super) async fn run(
         let (model, _) = tried.applied_to(&base.run.model)?;
         let (data, horizon) = (base.run.data.clone(), base.run.horizon);
         let run = if tried.moving {
-            ModelRun::from_nodes(model, data, horizon, base.run.nodes.clone())
+            ModelRun::from_window_starts(model, data, horizon, base.run.window_starts.clone())
         } else {
             ModelRun::new(model, data, horizon)
         };

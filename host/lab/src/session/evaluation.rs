@@ -5,7 +5,7 @@ use super::data::model_file;
 use super::saved::{SavedLog, SavedSession};
 use crate::compare::{Comparison, FailingSamples, ModelRun};
 use crate::error::Result;
-use crate::fitting::{FitData, Horizon};
+use crate::fitting::{FitProblem, Horizon};
 use crate::model::{JointColumns, MeasuredSignal, Model};
 use crate::output::number::{given, short};
 use serde::Serialize;
@@ -187,7 +187,7 @@ pub fn pooled_rms(run: &ModelRun) -> f64 {
 
 /// What an evaluation depends on.
 #[derive(Debug, Clone, PartialEq)]
-struct Wanted {
+struct EvaluationKey {
     toml: String,
     logs: Vec<SavedLog>,
     horizon: Horizon,
@@ -195,7 +195,7 @@ struct Wanted {
 
 /// The last evaluations.
 #[derive(Debug, Default)]
-pub(super) struct Evaluations(Vec<(Wanted, Arc<SessionEvaluation>)>);
+pub(super) struct Evaluations(Vec<(EvaluationKey, Arc<SessionEvaluation>)>);
 
 impl LabSession {
     /// The step's model along the session's motions; nothing without model or logs.
@@ -236,16 +236,16 @@ impl LabSession {
         self.kept(&wanted(saved, saved.current)?)
     }
 
-    fn kept(&self, wanted: &Wanted) -> Option<Arc<SessionEvaluation>> {
+    fn kept(&self, wanted: &EvaluationKey) -> Option<Arc<SessionEvaluation>> {
         let known = self.known();
         let found = known.0.iter().find(|(key, _)| key == wanted);
         found.map(|(_, evaluation)| evaluation.clone())
     }
 
     /// An evaluation of the same model and logs, whose motions need not be read again.
-    fn kept_at_another_horizon(&self, wanted: &Wanted) -> Option<Arc<SessionEvaluation>> {
+    fn kept_at_another_horizon(&self, wanted: &EvaluationKey) -> Option<Arc<SessionEvaluation>> {
         let known = self.known();
-        let same = |key: &Wanted| key.toml == wanted.toml && key.logs == wanted.logs;
+        let same = |key: &EvaluationKey| key.toml == wanted.toml && key.logs == wanted.logs;
         let found = known.0.iter().find(|(key, _)| same(key));
         found.map(|(_, evaluation)| evaluation.clone())
     }
@@ -265,7 +265,7 @@ impl LabSession {
         let fitted = split.training.len();
         let motions = [split.training, split.held_out].concat();
         let horizon = saved.horizon();
-        let data = FitData::new(&model, motions, horizon);
+        let data = FitProblem::new(&model, motions, horizon);
         let run = ModelRun::new(model, data, horizon);
         Ok(SessionEvaluation::of(
             run,
@@ -275,9 +275,9 @@ impl LabSession {
     }
 }
 
-fn wanted(saved: &SavedSession, step: usize) -> Option<Wanted> {
+fn wanted(saved: &SavedSession, step: usize) -> Option<EvaluationKey> {
     let step = saved.steps.get(step).filter(|_| !saved.logs.is_empty())?;
-    Some(Wanted {
+    Some(EvaluationKey {
         toml: step.toml.clone(),
         logs: saved.logs.clone(),
         horizon: saved.horizon(),

@@ -13,20 +13,20 @@ fn text(file: &Path) -> Result<String> {
 
 /// A model and logs, as files.
 #[derive(Debug, Clone, Default)]
-pub struct Given {
+pub struct ProjectFiles {
     /// Model file: TOML, URDF or MJCF.
     pub model: Option<PathBuf>,
     /// Logs.
     pub logs: Vec<LogRequest>,
 }
 
-impl Given {
+impl ProjectFiles {
     /// Files as they stand on a command line: a model, first or known by its ending, and logs.
     ///
     /// # Errors
     /// Two models.
-    pub fn of(files: &[LogRequest]) -> Result<Given> {
-        let mut given = Given::default();
+    pub fn of(files: &[LogRequest]) -> Result<ProjectFiles> {
+        let mut given = ProjectFiles::default();
         for (index, file) in files.iter().enumerate() {
             let unknown = !LogFormat::is_log(&file.path);
             if !(is_model(&file.path) || index == 0 && unknown) {
@@ -61,7 +61,7 @@ impl LabSession {
     ///
     /// # Errors
     /// Files that cannot be read or written.
-    pub fn bring(&self, given: &Given) -> Result<()> {
+    pub fn bring(&self, given: &ProjectFiles) -> Result<()> {
         if let Some(file) = &given.model {
             let step = SavedStep {
                 title: "as given".into(),

@@ -30,7 +30,7 @@ pub(super) use evaluation::{SessionEvaluation, ShownUnit, in_degrees, over, pool
 pub(super) use example::EXAMPLES;
 pub(super) use facts::LogFacts;
 pub(super) use file::SessionFile;
-pub use given::Given;
+pub use given::ProjectFiles;
 pub(super) use job::{Ending, JobReport, JobSlot};
 pub(super) use kept::{SavedProposal, model_sha256};
 pub(super) use names::{effect_name, effect_of, listed, value_name};

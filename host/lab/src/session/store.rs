@@ -1,6 +1,6 @@
 //! The sessions of one folder, each in a folder of its own.
 
-use super::{Ending, Given, LabSession};
+use super::{Ending, LabSession, ProjectFiles};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Debug)]
 pub struct SessionStore {
     folder: PathBuf,
-    given: Given,
+    given: ProjectFiles,
     open: Mutex<OpenSessions>,
 }
 
@@ -27,7 +27,7 @@ impl SessionStore {
     ///
     /// # Errors
     /// A folder, session, model or log that cannot be read.
-    pub fn open(folder: PathBuf, given: Given) -> Result<SessionStore> {
+    pub fn open(folder: PathBuf, given: ProjectFiles) -> Result<SessionStore> {
         let refused = |error| Error::file(&folder, "make", error);
         std::fs::create_dir_all(&folder).map_err(refused)?;
         let folder = folder.canonicalize().map_err(refused)?;

@@ -1,6 +1,6 @@
 //! Load friction of a plain bearing: the weight it carries and the swing press on it.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 
 /// r F, with r the friction coefficient times the bearing radius and F the force in the bearing.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ impl Effect for BearingFriction {
         &INFO
     }
 
-    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.bearing_load_n
     }
 }

@@ -1,6 +1,6 @@
 //! Coulomb friction: the same resistance at every speed, and a hold at rest.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 
 /// tau_f = -tau_c sgn(w); at rest the joint is held up to tau_c.
 #[derive(Debug)]
@@ -71,7 +71,7 @@ impl Effect for Coulomb {
         Some(&ON_SLIDE)
     }
 
-    fn friction(&self, values: &[f64], _at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], _at: &FrictionState) -> f64 {
         values[0]
     }
 

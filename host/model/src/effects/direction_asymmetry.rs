@@ -1,6 +1,6 @@
 //! Direction asymmetry: one direction resists more than the other.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 
 /// tau_d sgn(w): the friction is tau_c + tau_d forwards and tau_c - tau_d backwards.
 #[derive(Debug)]
@@ -67,7 +67,7 @@ impl Effect for DirectionAsymmetry {
         Some(&ON_SLIDE)
     }
 
-    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.direction
     }
 

@@ -1,6 +1,6 @@
 //! Drive/backdrive asymmetry: of the motor's torque a gear loses another share than of the load's.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 
 /// |k_m tau_m - k_e tau_e|, with motor torque tau_m and outside torque tau_e.
 #[derive(Debug)]
@@ -65,7 +65,7 @@ impl Effect for DriveAsymmetry {
         Some(&INFO)
     }
 
-    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         (values[0] * at.motor_nm - values[1] * at.outside_nm).abs()
     }
 }

@@ -1,8 +1,8 @@
 //! What an effect may change: a hook for each site.
 
 use super::{
-    AtRest, Axis, DriveState, EffectInfo, Encoded, Gear, JointState, MemoryCell, Rig, SenseMemory,
-    Site, Slide, Slope, StepState, ValueBehind,
+    AtRest, Axis, DriveState, EffectInfo, Encoded, FrictionState, Gear, JointState, MemoryCell,
+    Rig, SenseMemory, Site, Slope, StepState, ValueBehind,
 };
 use std::fmt;
 
@@ -82,7 +82,7 @@ pub trait Effect: Sync + fmt::Debug {
 
     /// Friction: magnitude opposing the motion, N m, not below zero in sum. At `speed_rad_s = 0` it
     /// is the breakaway torque: a joint at rest is held until pushed harder than that.
-    fn friction(&self, _values: &[f64], _at: &Slide) -> f64 {
+    fn friction(&self, _values: &[f64], _at: &FrictionState) -> f64 {
         0.0
     }
 

@@ -1,6 +1,6 @@
 //! Load friction: what the gear transmits presses its teeth together.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 
 /// k |tau_m - tau_e|, with motor torque tau_m and outside torque tau_e.
 #[derive(Debug)]
@@ -56,7 +56,7 @@ impl Effect for LoadFriction {
         Some(&INFO)
     }
 
-    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.gear_load_nm
     }
 }

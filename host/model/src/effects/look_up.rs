@@ -4,7 +4,7 @@ use super::{EFFECTS, Effect, EffectInfo, expression};
 
 /// What a name means.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Found {
+pub enum NameMatch {
     /// This effect, and no other, is called so.
     One(&'static dyn Effect),
     /// Each of these is called so, as the friction laws are by `friction`.
@@ -15,7 +15,7 @@ pub enum Found {
 
 /// The effects called `name`, whatever its case, hyphens and blanks (`BackEMF`, `dead band`): by id,
 /// else by title or alias, those that model files have defined included.
-pub fn look_up(name: &str) -> Found {
+pub fn look_up(name: &str) -> NameMatch {
     let all: Vec<&'static dyn Effect> = EFFECTS
         .iter()
         .copied()
@@ -27,15 +27,15 @@ pub fn look_up(name: &str) -> Found {
         id == name || squeezed(id) == wanted
     };
     if let Some(effect) = all.iter().find(of_id) {
-        return Found::One(*effect);
+        return NameMatch::One(*effect);
     }
     let called =
         |effect: &&'static dyn Effect| names(effect.info()).any(|alias| squeezed(alias) == wanted);
     let called: Vec<_> = all.iter().copied().filter(called).collect();
     match called.as_slice() {
-        [] => Found::Similar(similar(name, &all)),
-        [one] => Found::One(*one),
-        _ => Found::Several(called),
+        [] => NameMatch::Similar(similar(name, &all)),
+        [one] => NameMatch::One(*one),
+        _ => NameMatch::Several(called),
     }
 }
 

@@ -61,12 +61,13 @@ pub use base_compliance::BaseSpring;
 pub use effect::{Effect, SMOOTH_DIFFERENCE};
 pub use gear::{Coupling, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site, ValueBehind};
-pub use look_up::{Found, listed, look_up};
+pub use look_up::{NameMatch, listed, look_up};
 pub use on_slide::on_axis;
 pub use placebo::PLACEBO;
 pub use probe::{Probe, ProbeVariable};
 pub use state::{
-    AtRest, DriveState, Encoded, JointState, MemoryCell, Rig, SenseMemory, Slide, Slope, StepState,
+    AtRest, DriveState, Encoded, FrictionState, JointState, MemoryCell, Rig, SenseMemory, Slope,
+    StepState,
 };
 pub use torque_scale::TorqueScale;
 

@@ -1,8 +1,8 @@
 //! Effects at joints that slide: the laws are those of hinges, in metres and newtons.
 
 use super::{
-    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, Encoded, Gear, JointState, MemoryCell,
-    Rig, Scope, SenseMemory, Slide, Slope, StepState, ValueBehind,
+    AtRest, Axis, DriveState, EFFECTS, Effect, EffectInfo, Encoded, FrictionState, Gear,
+    JointState, MemoryCell, Rig, Scope, SenseMemory, Slope, StepState, ValueBehind,
 };
 use std::sync::LazyLock;
 
@@ -100,7 +100,7 @@ impl Effect for OnSlide {
         self.effect.torque(values, at)
     }
 
-    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         self.effect.friction(values, at)
     }
 

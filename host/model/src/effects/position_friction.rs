@@ -1,6 +1,6 @@
 //! Friction over position: gears, cables and bearings run heavier at some angles than at others.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 
 /// A table of three entries: 0 at the model's zero, two values at +-span, straight lines between
 /// them, and constant beyond.
@@ -113,7 +113,7 @@ impl Effect for PositionFriction {
         5e-3
     }
 
-    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         let [below, above, span] = values else {
             return 0.0;
         };

@@ -5,7 +5,7 @@ mod remembered;
 #[cfg(test)]
 mod tests;
 
-use super::{DriveState, Effect, Encoded, JointState, Needs, Parameter, Site, Slide};
+use super::{DriveState, Effect, Encoded, FrictionState, JointState, Needs, Parameter, Site};
 use bodies::{arm, gives_way_m, gravity_nm, inertia_nm, wound_nm};
 use std::ops::Range;
 
@@ -230,7 +230,7 @@ fn friction(
     [gear_nm, bearing_n]: [f64; 2],
 ) -> f64 {
     let direction = if speed < 0.0 { -1.0 } else { 1.0 };
-    let slide = Slide {
+    let slide = FrictionState {
         angle_rad,
         speed_rad_s: speed.abs(),
         direction,

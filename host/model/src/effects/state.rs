@@ -157,7 +157,7 @@ impl StepState {
 
 /// A joint that slides, or is about to.
 #[derive(Debug, Clone, Copy)]
-pub struct Slide {
+pub struct FrictionState {
     /// Angle from the previous link, rad; of the first joint from the model's zero.
     pub angle_rad: f64,
     /// Magnitude of the joint speed, rad/s; 0 asks for breakaway.

@@ -1,6 +1,6 @@
 //! Stiction and Stribeck friction: more resistance at rest than in motion.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site, Slide};
+use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 
 /// tau_x exp(-|w| / w_s), on top of the sliding friction.
 ///
@@ -101,7 +101,7 @@ impl Effect for Stribeck {
         5e-3
     }
 
-    fn friction(&self, values: &[f64], at: &Slide) -> f64 {
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         let [excess_nm, stribeck_rad_s] = values else {
             return 0.0;
         };

@@ -1,6 +1,6 @@
 //! Suggests the nearest known name, or the unit that a key lacks.
 
-use crate::effects::{Found, look_up};
+use crate::effects::{NameMatch, look_up};
 
 /// Which of the known names was meant, and which there are. Where effects are named, what people
 /// call them counts: `stribeck` for `stiction`.
@@ -37,9 +37,9 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
 /// Ids of the effects of this name, which may be an alias.
 fn effects_called(name: &str) -> Vec<&'static str> {
     match look_up(name) {
-        Found::One(effect) => vec![effect.info().id],
-        Found::Several(effects) => effects.iter().map(|effect| effect.info().id).collect(),
-        Found::Similar(_) => Vec::new(),
+        NameMatch::One(effect) => vec![effect.info().id],
+        NameMatch::Several(effects) => effects.iter().map(|effect| effect.info().id).collect(),
+        NameMatch::Similar(_) => Vec::new(),
     }
 }
 

@@ -53,7 +53,7 @@ pub(super) const CONDITIONS: &[NamedCondition] = &[
 const ANGLE_PARTS: usize = 6;
 
 /// Which samples meet a condition.
-pub(super) struct Met {
+pub(super) struct ConditionSamples {
     /// The condition in words.
     pub words: String,
     /// One flag per sample.
@@ -62,10 +62,10 @@ pub(super) struct Met {
 
 /// Every condition, ranges of angle included, asked of every sample; `shown` is the unit in which
 /// people read the angle, or a slide's displacement, and how many of them one SI unit is.
-pub(super) fn met(features: &[SampleFeatures], shown: (&str, f64)) -> Vec<Met> {
-    let mut all: Vec<Met> = CONDITIONS
+pub(super) fn met(features: &[SampleFeatures], shown: (&str, f64)) -> Vec<ConditionSamples> {
+    let mut all: Vec<ConditionSamples> = CONDITIONS
         .iter()
-        .map(|(words, holds)| Met {
+        .map(|(words, holds)| ConditionSamples {
             words: words.to_string(),
             holds: features.iter().map(holds).collect(),
         })
@@ -75,7 +75,7 @@ pub(super) fn met(features: &[SampleFeatures], shown: (&str, f64)) -> Vec<Met> {
 }
 
 /// Sixths of the range between the smallest and the largest angle.
-fn angle_ranges(features: &[SampleFeatures], (unit, per_si): (&str, f64)) -> Vec<Met> {
+fn angle_ranges(features: &[SampleFeatures], (unit, per_si): (&str, f64)) -> Vec<ConditionSamples> {
     let angles = || features.iter().map(|m| m.angle_rad);
     let low = angles().fold(f64::INFINITY, f64::min);
     let high = angles().fold(f64::NEG_INFINITY, f64::max);
@@ -93,7 +93,7 @@ fn angle_ranges(features: &[SampleFeatures], (unit, per_si): (&str, f64)) -> Vec
         .map(|part| {
             let (from, to) = (edge(part), edge(part + 1));
             let last = part + 1 == ANGLE_PARTS;
-            Met {
+            ConditionSamples {
                 words: format!(
                     "between {:.digits$} and {:.digits$} {unit}",
                     per_si * from,

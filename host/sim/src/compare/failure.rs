@@ -1,9 +1,9 @@
 //! Where the error is: conditions that hold more of it than their share of the samples.
 
-use super::conditions::{Met, met};
+use super::conditions::{ConditionSamples, met};
 use super::result::{Failure, SignalError};
 use super::sample_features::features;
-use crate::fitting::FitData;
+use crate::fitting::FitProblem;
 use crate::model::{MeasuredSignal, Model};
 
 /// Most failures told.
@@ -34,7 +34,7 @@ pub struct FailingSamples {
 /// `[signal][motion][sample]`, rad or rad/s.
 pub(super) fn failing(
     model: &Model,
-    data: &FitData,
+    data: &FitProblem,
     residuals: &[Vec<Vec<f64>>],
     signals: &[SignalError],
 ) -> Vec<FailingSamples> {
@@ -113,7 +113,11 @@ fn percent(share: f64) -> String {
 }
 
 /// Conditions that stand out, best first, each said once.
-pub(super) fn ranked(error_rad: &[f64], floor_rad: f64, conditions: Vec<Met>) -> Vec<Ranked> {
+pub(super) fn ranked(
+    error_rad: &[f64],
+    floor_rad: f64,
+    conditions: Vec<ConditionSamples>,
+) -> Vec<Ranked> {
     let weight: Vec<f64> = error_rad
         .iter()
         .map(|e| (e * e - floor_rad * floor_rad).max(0.0))

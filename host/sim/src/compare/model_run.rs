@@ -1,7 +1,9 @@
 //! A model run along measured motions: every sample it predicts, and what it leaves.
 
 use super::predicted::{predicted, residual};
-use crate::fitting::{FitData, Horizon, Node, fit_start_states, fit_start_states_roughly};
+use crate::fitting::{
+    FitProblem, Horizon, WindowStart, fit_start_states, fit_start_states_roughly,
+};
 use crate::model::Model;
 
 /// A model run along motions, its start states fitted; a comparison is made of it.
@@ -10,11 +12,11 @@ pub struct ModelRun {
     /// The model.
     pub model: Model,
     /// The motions, cut into windows.
-    pub data: FitData,
+    pub data: FitProblem,
     /// Longest windows asked for.
     pub horizon: Horizon,
     /// Where each window starts.
-    pub nodes: Vec<Node>,
+    pub window_starts: Vec<WindowStart>,
     /// Predicted angles, rad, or rates where no angle is measured, rad/s, then rates of sensors
     /// beside an angle's: `[motion][signal][sample]`.
     pub predicted: Vec<Vec<Vec<f64>>>,
@@ -22,25 +24,30 @@ pub struct ModelRun {
 
 impl ModelRun {
     /// Fits the start states and predicts; `data` is cut at `horizon`.
-    pub fn new(model: Model, data: FitData, horizon: Horizon) -> ModelRun {
-        let nodes = fit_start_states(&model, &data).nodes;
-        ModelRun::from_nodes(model, data, horizon, nodes)
+    pub fn new(model: Model, data: FitProblem, horizon: Horizon) -> ModelRun {
+        let window_starts = fit_start_states(&model, &data).window_starts;
+        ModelRun::from_window_starts(model, data, horizon, window_starts)
     }
 
     /// The same with start states that are fitted roughly, for who cannot wait.
-    pub fn roughly(model: Model, data: FitData, horizon: Horizon) -> ModelRun {
-        let nodes = fit_start_states_roughly(&model, &data).nodes;
-        ModelRun::from_nodes(model, data, horizon, nodes)
+    pub fn roughly(model: Model, data: FitProblem, horizon: Horizon) -> ModelRun {
+        let window_starts = fit_start_states_roughly(&model, &data).window_starts;
+        ModelRun::from_window_starts(model, data, horizon, window_starts)
     }
 
     /// Predicts from these start states, one for each window of `data`.
-    pub fn from_nodes(model: Model, data: FitData, horizon: Horizon, nodes: Vec<Node>) -> ModelRun {
+    pub fn from_window_starts(
+        model: Model,
+        data: FitProblem,
+        horizon: Horizon,
+        window_starts: Vec<WindowStart>,
+    ) -> ModelRun {
         ModelRun {
-            predicted: predicted(&model, &data, &nodes),
+            predicted: predicted(&model, &data, &window_starts),
             model,
             data,
             horizon,
-            nodes,
+            window_starts,
         }
     }
 

@@ -4,7 +4,7 @@
 //! borders.
 
 use super::result::ResidualTest;
-use crate::fitting::FitData;
+use crate::fitting::FitProblem;
 use crate::model::MeasuredSignal;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -19,7 +19,7 @@ const Z_99_OF_51: f64 = 3.725;
 
 /// Tests of one signal's residual, rad or rad/s, per motion; none where there are too few samples.
 pub(super) fn residual_tests(
-    data: &FitData,
+    data: &FitProblem,
     signal: usize,
     residual: &[Vec<f64>],
 ) -> Vec<ResidualTest> {

@@ -5,7 +5,7 @@ use super::model_run::ModelRun;
 use super::predicted::{predicted, residual};
 use super::residual_tests::residual_tests;
 use super::result::{Comparison, HorizonError, SignalError, Trace};
-use crate::fitting::{FitData, Horizon, fit_start_states};
+use crate::fitting::{FitProblem, Horizon, fit_start_states};
 use crate::model::{MeasuredSignal, Model};
 use crate::motion::Motion;
 
@@ -28,7 +28,7 @@ pub fn compare(
     horizon: Option<Horizon>,
 ) -> Comparison {
     let horizon = horizon.unwrap_or(Horizon::Whole);
-    let data = FitData::new(model, motions.to_vec(), horizon);
+    let data = FitProblem::new(model, motions.to_vec(), horizon);
     ModelRun::new(model.clone(), data, horizon).comparison(name)
 }
 
@@ -109,7 +109,7 @@ impl ModelRun {
 }
 
 /// Root-mean-square error of the joints that count together.
-fn pooled(data: &FitData, residuals: &[Vec<Vec<f64>>]) -> f64 {
+fn pooled(data: &FitProblem, residuals: &[Vec<Vec<f64>>]) -> f64 {
     let signals = residuals.iter().enumerate();
     let counted = signals.filter(|(signal, _)| data.counts(*signal));
     rms(counted.flat_map(|(_, motions)| motions))
@@ -129,7 +129,7 @@ fn rms<'a>(residuals: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
     }
 }
 
-fn signal(data: &FitData, index: usize, residual: &[Vec<f64>]) -> SignalError {
+fn signal(data: &FitProblem, index: usize, residual: &[Vec<f64>]) -> SignalError {
     let rms = rms(residual.iter());
     let floor = data.sigma[index];
     let motions = 0..data.motions.len();
@@ -178,7 +178,7 @@ pub fn fit_percent(measured: &[&[f64]], residual: &[Vec<f64>]) -> f64 {
 }
 
 /// The error over ever longer runs, shorter than the horizon of the comparison.
-fn horizons(model: &Model, data: &FitData, horizon: Horizon) -> Vec<HorizonError> {
+fn horizons(model: &Model, data: &FitProblem, horizon: Horizon) -> Vec<HorizonError> {
     let longest = data.longest_s();
     let (mut time, mut intervals) = (0.0, 0.0);
     for motion in &data.motions {
@@ -192,7 +192,7 @@ fn horizons(model: &Model, data: &FitData, horizon: Horizon) -> Vec<HorizonError
         .filter(|s| *s >= 0.99 * least_s && *s < 0.99 * limit_s)
         .map(|s| {
             let data = data.recut(Horizon::Seconds(s));
-            let predicted = predicted(model, &data, &fit_start_states(model, &data).nodes);
+            let predicted = predicted(model, &data, &fit_start_states(model, &data).window_starts);
             let signals = 0..data.signals.len();
             let residuals: Vec<_> = signals.map(|s| residual(&data, &predicted, s)).collect();
             HorizonError {
@@ -204,7 +204,7 @@ fn horizons(model: &Model, data: &FitData, horizon: Horizon) -> Vec<HorizonError
         .collect()
 }
 
-fn traces(data: &FitData, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
+fn traces(data: &FitProblem, predicted: &[Vec<Vec<f64>>]) -> Vec<Trace> {
     let mut traces = Vec::new();
     for (index, predicted) in predicted.iter().enumerate() {
         let motion = &data.motions[index];

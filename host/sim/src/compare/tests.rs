@@ -2,12 +2,12 @@
 
 mod residual_tests;
 
-use super::conditions::{CONDITIONS, Met, met};
+use super::conditions::{CONDITIONS, ConditionSamples, met};
 use super::failure::{failing, ranked};
 use super::run::fit_percent;
 use super::sample_features::{features, speed_rad_s};
 use super::*;
-use crate::fitting::{FitData, Horizon};
+use crate::fitting::{FitProblem, Horizon};
 use crate::model::Model;
 use crate::motion::{Motion, MotionSource};
 use crate::output::number::mrad_in_column;
@@ -150,7 +150,7 @@ fn an_error_after_reversals_is_named_so() {
 #[test]
 fn the_same_samples_are_named_once() {
     let error: Vec<f64> = (0..100).map(|k| if k < 20 { 1.0 } else { 0.1 }).collect();
-    let first = |words: &str, count: usize| Met {
+    let first = |words: &str, count: usize| ConditionSamples {
         words: words.into(),
         holds: (0..100).map(|k| k < count).collect(),
     };
@@ -183,7 +183,7 @@ fn a_joint_at_its_floor_has_no_failures() {
         ..signal.clone()
     }];
     let error = vec![vec![noise(1, 300, 0.0)]];
-    let data = FitData::new(&pendulum(), motions.to_vec(), Horizon::Whole);
+    let data = FitProblem::new(&pendulum(), motions.to_vec(), Horizon::Whole);
     assert!(failing(&pendulum(), &data, &error, &signals).is_empty());
 }
 
@@ -207,7 +207,7 @@ fn missing_friction_shows_and_grows_with_the_run() {
 fn a_trace_tells_where_the_model_restarts() {
     let motions = [swing(0.8, 0.02, 500), swing(-0.5, 0.02, 300)];
     let horizon = Horizon::Seconds(1.0);
-    let data = FitData::new(&pendulum(), motions.to_vec(), horizon);
+    let data = FitProblem::new(&pendulum(), motions.to_vec(), horizon);
     let cut = compare(&pendulum(), "in windows", &motions, Some(horizon));
     for (motion, trace) in cut.traces.iter().enumerate() {
         let starts = data

@@ -2,7 +2,7 @@
 //! the prediction of the model fitted without it, and from every start value that it has.
 
 use super::candidate::Candidate;
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::horizon::Horizon;
 use super::initial_guess::{ProjectedResidual, Sizes, changes};
@@ -38,7 +38,7 @@ pub(super) struct AddedEffects<'a> {
     pub candidates: &'a [Candidate],
     /// What is free: the model's own values, then the effects'.
     pub free: &'a [ParameterPath],
-    pub data: &'a FitData,
+    pub data: &'a FitProblem,
     /// Values of the effects, and of what is free beside them, that are to be improved on; none of
     /// effects that nothing is known of.
     pub start: &'a [(ParameterPath, f64)],
@@ -47,7 +47,7 @@ pub(super) struct AddedEffects<'a> {
 /// A fit in windows, and these.
 struct InWindows {
     fit: Fit,
-    windows: FitData,
+    windows: FitProblem,
 }
 
 /// A way that a fit may be found; none where windows are too short for it.
@@ -148,7 +148,7 @@ impl AddedEffects<'_> {
 
     /// The effects on top of a fit, one after the other, each from the starts that what it changes
     /// in the prediction makes most of the residual with.
-    fn by_change(&self, base: &Fit, data: &FitData) -> Fit {
+    fn by_change(&self, base: &Fit, data: &FitProblem) -> Fit {
         let mut found = base.clone();
         for candidate in self.candidates {
             let changes = changes(&found, *candidate, Sizes::Both, data);
@@ -166,7 +166,7 @@ impl AddedEffects<'_> {
     }
 
     /// An effect at the first of its start values, where what it changes tells nothing.
-    fn one_more(&self, found: &Fit, candidate: Candidate, data: &FitData) -> Fit {
+    fn one_more(&self, found: &Fit, candidate: Candidate, data: &FitProblem) -> Fit {
         let mut model = found.model.clone();
         let start = candidate.starts().swap_remove(0);
         model.effects.push(candidate.instance(&start));
@@ -176,7 +176,7 @@ impl AddedEffects<'_> {
 
     /// The effects added to the model as it was given, one after the other, each from the best of
     /// all its start values.
-    fn best_of_starts(&self, windows: &FitData, step: &dyn Fn()) -> Fit {
+    fn best_of_starts(&self, windows: &FitProblem, step: &dyn Fn()) -> Fit {
         let (mut model, mut free) = (self.model.clone(), self.model.free.clone());
         for candidate in self.candidates {
             free.extend(
@@ -251,8 +251,14 @@ impl AddedEffects<'_> {
             let values: Vec<f64> = values.collect();
             model.effects.push(candidate.instance(&values));
         }
-        let nodes = Some(&base.nodes[..]);
-        fit(&model, self.free, self.data, nodes, FitOptions::default())
+        let window_starts = Some(&base.window_starts[..]);
+        fit(
+            &model,
+            self.free,
+            self.data,
+            window_starts,
+            FitOptions::default(),
+        )
     }
 }
 

@@ -6,11 +6,11 @@
 //! state is then fitted within wide limits around the guess.
 
 use super::horizon::Window;
-use super::node::Node;
 use super::residual::{weighted, worst};
+use super::window_start::WindowStart;
 use crate::model::{MeasuredSignal, Model, hanging};
 use crate::motion::Motion;
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, PlantMemory, predict};
 use std::f64::consts::TAU;
 
 /// Angles tried in a turn for the one at which a rate begins.
@@ -42,7 +42,7 @@ pub(super) struct AssumedJoint {
 /// Per joint; none where its angle is measured.
 pub(super) type AssumedStates = Vec<Option<AssumedJoint>>;
 
-/// Guesses for one motion. `signals` and `sigma` as in [`super::FitData`].
+/// Guesses for one motion. `signals` and `sigma` as in [`super::FitProblem`].
 pub(super) fn assumed(
     model: &Model,
     signals: &[MeasuredSignal],
@@ -217,8 +217,8 @@ fn cost(
         };
         let samples = window.samples.clone();
         let mut values = vec![0.0; samples.len() * plant.signals()];
-        let start = Node::guess(motion, sigma, states, &window).start(&plant);
-        let mut memory = Memory::default();
+        let start = WindowStart::guess(motion, sigma, states, &window).start(&plant);
+        let mut memory = PlantMemory::default();
         predict(
             &plant,
             motion,
@@ -249,8 +249,8 @@ fn run_free(
     states: &mut AssumedStates,
 ) {
     let plant = Plant::new(model, motion);
-    let mut start = Node::guess(motion, sigma, states, whole).start(&plant);
-    let mut memory = Memory::default();
+    let mut start = WindowStart::guess(motion, sigma, states, whole).start(&plant);
+    let mut memory = PlantMemory::default();
     let mut readings = vec![0.0; 2 * plant.signals()];
     for k in 0..motion.len() {
         for (joint, state) in states.iter_mut().enumerate() {

@@ -10,22 +10,35 @@ use nalgebra::{DMatrix, DVector};
 
 impl WindowJacobian {
     /// The residual after a step, were it linear in the unknowns.
-    pub fn linear_residual(&self, values: &DVector<f64>, node: &DVector<f64>) -> DVector<f64> {
+    pub fn linear_residual(
+        &self,
+        values: &DVector<f64>,
+        window_start: &DVector<f64>,
+    ) -> DVector<f64> {
         let mut residual = self.residual.clone();
         residual.gemv(-1.0, &self.parameters, values, 1.0);
-        residual.gemv(-1.0, &self.node, node, 1.0);
+        residual.gemv(-1.0, &self.window_start, window_start, 1.0);
         residual
     }
 
     /// Corrects the derivatives by a step that led to `residual`. How much each unknown gets of the
     /// correction goes by how much of the step it was to make.
-    pub fn correct(&mut self, values: &DVector<f64>, node: &DVector<f64>, residual: &[f64]) {
-        let missed = self.linear_residual(values, node) - DVector::from_column_slice(residual);
-        let (of_values, of_node) = (weights(&self.parameters, values), weights(&self.node, node));
-        let all = of_values.dot(values) + of_node.dot(node);
+    pub fn correct(
+        &mut self,
+        values: &DVector<f64>,
+        window_start: &DVector<f64>,
+        residual: &[f64],
+    ) {
+        let missed =
+            self.linear_residual(values, window_start) - DVector::from_column_slice(residual);
+        let (of_values, of_node) = (
+            weights(&self.parameters, values),
+            weights(&self.window_start, window_start),
+        );
+        let all = of_values.dot(values) + of_node.dot(window_start);
         if all > 0.0 {
             self.parameters.ger(1.0 / all, &missed, &of_values, 1.0);
-            self.node.ger(1.0 / all, &missed, &of_node, 1.0);
+            self.window_start.ger(1.0 / all, &missed, &of_node, 1.0);
         }
         self.residual.copy_from_slice(residual);
     }
@@ -47,21 +60,25 @@ mod tests {
         let mut window = WindowJacobian {
             residual: DVector::from_column_slice(&[1.0, -2.0, 0.5]),
             parameters: DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.3, -1.0, 2.0, 0.1]),
-            node: DMatrix::from_row_slice(3, 1, &[0.5, 0.5, 0.0]),
+            window_start: DMatrix::from_row_slice(3, 1, &[0.5, 0.5, 0.0]),
             node_precision: DVector::from_element(1, 1.0),
             node_pull: DVector::zeros(1),
             node_edge: vec![0.0],
         };
         let before = window.clone();
-        let (values, node) = (
+        let (values, window_start) = (
             DVector::from_vec(vec![0.3, -0.1]),
             DVector::from_element(1, 0.2),
         );
         let after = [0.4, -2.5, 0.1];
-        window.correct(&values, &node, &after);
+        window.correct(&values, &window_start, &after);
         assert_eq!(window.residual.as_slice(), after);
         window.residual.copy_from(&before.residual);
-        for (linear, after) in window.linear_residual(&values, &node).iter().zip(after) {
+        for (linear, after) in window
+            .linear_residual(&values, &window_start)
+            .iter()
+            .zip(after)
+        {
             assert!((linear - after).abs() < 1e-12, "{linear} {after}");
         }
     }

@@ -1,7 +1,7 @@
 //! An effect of the library at a place of the model (a joint, all driven joints, the whole rig): by
 //! its name, its addresses, its start values.
 
-use crate::effects::{Effect, Found, Parameter, SMOOTH_DIFFERENCE, Scope, listed, look_up};
+use crate::effects::{Effect, NameMatch, Parameter, SMOOTH_DIFFERENCE, Scope, listed, look_up};
 use crate::error::Error;
 use crate::model::{EffectInstance, Model, ParameterPath, effect_on, named_at};
 use std::fmt;
@@ -234,12 +234,12 @@ impl From<CandidateError> for Error {
 pub fn effect_named(name: &str) -> Result<&'static dyn Effect, CandidateError> {
     let owned = || name.to_string();
     match look_up(name) {
-        Found::One(effect) => Ok(effect),
-        Found::Several(called) => Err(CandidateError::SeveralEffects {
+        NameMatch::One(effect) => Ok(effect),
+        NameMatch::Several(called) => Err(CandidateError::SeveralEffects {
             name: owned(),
             called,
         }),
-        Found::Similar(similar) => Err(CandidateError::UnknownEffect {
+        NameMatch::Similar(similar) => Err(CandidateError::UnknownEffect {
             name: owned(),
             similar,
         }),

@@ -1,7 +1,7 @@
 //! Stretches of time within which residuals may be correlated as they like, while those of
 //! different stretches are taken for independent.
 
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::Fit;
 use nalgebra::{DMatrix, DVector};
 
@@ -33,7 +33,7 @@ impl Cluster {
 }
 
 /// The clusters of a fit, in order of motions and time; windows shorter than a cluster share it.
-pub(super) fn clusters(fit: &Fit, data: &FitData) -> Vec<Cluster> {
+pub(super) fn clusters(fit: &Fit, data: &FitProblem) -> Vec<Cluster> {
     let total_s: f64 = data.motions.iter().map(|m| m.duration_s()).sum();
     let length_s = LENGTH_S.min(total_s / LEAST).max(1e-9);
     let count = fit.free.len();
@@ -85,7 +85,7 @@ pub(super) fn clusters(fit: &Fit, data: &FitData) -> Vec<Cluster> {
 /// How far rests pull the values, as squares: an encoder that does not move on misreads by the same
 /// amount all the while, by a rounding that no fit sees, for the values take it up. In units of the
 /// noise, which is no less than the rounding.
-pub(super) fn pull_of_rests(fit: &Fit, data: &FitData) -> DMatrix<f64> {
+pub(super) fn pull_of_rests(fit: &Fit, data: &FitProblem) -> DMatrix<f64> {
     let count = fit.free.len();
     let mut pull = DMatrix::zeros(count, count);
     for (window, jacobian) in data.windows.iter().zip(&fit.jacobian) {
@@ -124,7 +124,7 @@ impl Stretches {
     /// Of about this length, s. None begins while the rig rests: an encoder then misreads by the
     /// same amount all the while, so that every stretch of a rest contradicts what the others tell,
     /// or none does.
-    fn of(data: &FitData, motion: usize, length_s: f64) -> Stretches {
+    fn of(data: &FitProblem, motion: usize, length_s: f64) -> Stretches {
         let log = &data.motions[motion];
         let pieces = (log.duration_s() / length_s).round().max(1.0) as usize;
         let edge = |piece: usize| {
@@ -180,7 +180,7 @@ mod tests {
     fn a_rest_is_one_stretch_and_a_swing_several() {
         let model = pendulum(ANGLE, 0.006);
         let mut motion = swing(&model, &[1.0], even(600, 100.0));
-        let data = |motion| FitData::new(&model, vec![motion], Horizon::Whole);
+        let data = |motion| FitProblem::new(&model, vec![motion], Horizon::Whole);
         let begins = |motion| Stretches::of(&data(motion), 0, 1.0).0;
         assert_eq!(begins(motion.clone()), [100, 200, 300, 400, 500]);
         let angles = &mut motion.position_rad[0];

@@ -1,7 +1,7 @@
 //! How well the fitted values are known.
 
 use super::cluster::{Cluster, clusters, pull_of_rests};
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::Fit;
 use super::student::quantile_975;
 use nalgebra::DMatrix;
@@ -31,7 +31,7 @@ const TAKEN_OUT: f64 = 0.95;
 /// the fit takes it up, and no residual shows it. A value may rest on few clusters: the interval is
 /// Student's with as many degrees of freedom as clusters really carry it (Bell & McCaffrey 2002).
 /// Start states count as unknowns. `None` where the data do not determine the values at all.
-pub fn intervals(fit: &Fit, data: &FitData) -> Option<(Vec<Interval>, DMatrix<f64>)> {
+pub fn intervals(fit: &Fit, data: &FitProblem) -> Option<(Vec<Interval>, DMatrix<f64>)> {
     let free: Vec<usize> = (0..fit.free.len()).collect();
     intervals_of(&free, fit, data)
 }
@@ -40,7 +40,7 @@ pub fn intervals(fit: &Fit, data: &FitData) -> Option<(Vec<Interval>, DMatrix<f6
 pub fn intervals_of(
     places: &[usize],
     fit: &Fit,
-    data: &FitData,
+    data: &FitProblem,
 ) -> Option<(Vec<Interval>, DMatrix<f64>)> {
     let count = places.len();
     let clusters = clusters(fit, data).into_iter();
@@ -79,7 +79,10 @@ pub fn intervals_of(
 
 /// Squared weighted residual for each sample beyond those that the unknowns take up.
 fn residual_variance(fit: &Fit) -> f64 {
-    let columns = fit.jacobian.iter().flat_map(|w| w.node.column_iter());
+    let columns = fit
+        .jacobian
+        .iter()
+        .flat_map(|w| w.window_start.column_iter());
     let start_states = columns.filter(|column| column.amax() > 0.0).count();
     let unknowns = fit.free.len() + start_states;
     let freedom = fit.residuals.count().saturating_sub(unknowns).max(1);

@@ -4,7 +4,7 @@
 //! move, the speed jumps, and what the samples around it say of the speed is true of neither side.
 
 use super::horizon::{Horizon, Window};
-use super::node::{REACH_S, StartDoubt};
+use super::window_start::{REACH_S, StartDoubt};
 use crate::motion::Motion;
 
 /// A start that the samples around it contradict by more than so many standard deviations is moved

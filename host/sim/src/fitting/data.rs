@@ -7,8 +7,8 @@ use super::cut::{cut, cut_evenly};
 use super::growth::stable_horizon;
 use super::halt::Halt;
 use super::horizon::{Horizon, Window};
-use super::node::{Node, StartGuess};
 use super::student::quantile_975;
+use super::window_start::{StartGuess, WindowStart};
 use super::windows::MotionWindow;
 use crate::model::{MeasuredSignal, Model};
 use crate::motion::Motion;
@@ -18,7 +18,7 @@ use std::collections::HashMap;
 
 /// Measured motions ready to be fitted.
 #[derive(Debug, Clone)]
-pub struct FitData {
+pub struct FitProblem {
     /// The motions.
     pub motions: Vec<Motion>,
     /// Windows in the order of motions and time.
@@ -41,11 +41,11 @@ pub struct FitData {
     halt: Halt,
 }
 
-impl FitData {
+impl FitProblem {
     /// Cuts motions into windows as long as the horizon and each motion's own growth of errors
     /// allow; the noise is estimated from the motions and the declared resolution.
-    pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitData {
-        FitData::growing(model, motions, horizon, None)
+    pub fn new(model: &Model, motions: Vec<Motion>, horizon: Horizon) -> FitProblem {
+        FitProblem::growing(model, motions, horizon, None)
     }
 
     /// The same of motions in which start errors grow as in those of `other`, one by one.
@@ -53,9 +53,9 @@ impl FitData {
         model: &Model,
         motions: Vec<Motion>,
         horizon: Horizon,
-        other: &FitData,
-    ) -> FitData {
-        FitData::growing(model, motions, horizon, Some(&other.stable))
+        other: &FitProblem,
+    ) -> FitProblem {
+        FitProblem::growing(model, motions, horizon, Some(&other.stable))
     }
 
     fn growing(
@@ -63,7 +63,7 @@ impl FitData {
         motions: Vec<Motion>,
         horizon: Horizon,
         stable: Option<&[Horizon]>,
-    ) -> FitData {
+    ) -> FitProblem {
         let rate_joints = model.log.rate_joints();
         let motions = motions.into_iter();
         let motions: Vec<Motion> = motions.map(|m| m.with_rates(&rate_joints)).collect();
@@ -78,7 +78,7 @@ impl FitData {
             (stable, assumed)
         });
         let (stable, assumed): (Vec<Horizon>, Vec<AssumedStates>) = prepared.unzip();
-        FitData {
+        FitProblem {
             windows: cut(&motions, &stable, &sigma, horizon),
             motions,
             signals,
@@ -92,8 +92,8 @@ impl FitData {
     }
 
     /// The same data, all of whose runs this ends.
-    pub fn halted_by(self, halt: &Halt) -> FitData {
-        FitData {
+    pub fn halted_by(self, halt: &Halt) -> FitProblem {
+        FitProblem {
             halt: halt.clone(),
             ..self
         }
@@ -106,8 +106,8 @@ impl FitData {
 
     /// The same motions with the weights of others: those that decide on a fit are weighted as
     /// those it was fitted to.
-    pub fn weighted_like(self, other: &FitData) -> FitData {
-        FitData {
+    pub fn weighted_like(self, other: &FitProblem) -> FitProblem {
+        FitProblem {
             sigma: other.sigma.clone(),
             sigma_error: other.sigma_error.clone(),
             ..self
@@ -115,8 +115,8 @@ impl FitData {
     }
 
     /// The same motions and weights cut at another horizon.
-    pub fn recut(&self, horizon: Horizon) -> FitData {
-        FitData {
+    pub fn recut(&self, horizon: Horizon) -> FitProblem {
+        FitProblem {
             windows: cut(&self.motions, &self.stable, &self.sigma, horizon),
             ..self.clone()
         }
@@ -124,20 +124,20 @@ impl FitData {
 
     /// The same cut at even places, whatever the samples there tell of a start: where windows are
     /// counted, each is to weigh alike.
-    pub fn cut_evenly(&self, horizon: Horizon) -> FitData {
-        FitData {
+    pub fn cut_evenly(&self, horizon: Horizon) -> FitProblem {
+        FitProblem {
             windows: cut_evenly(&self.motions, &self.stable, horizon),
             ..self.clone()
         }
     }
 
     /// One of the motions, cut as it is here.
-    pub fn only(&self, motion: usize) -> FitData {
+    pub fn only(&self, motion: usize) -> FitProblem {
         self.part(|m| m == motion)
     }
 
     /// The motions of both, with the weights of this one.
-    pub fn joined(&self, other: &FitData) -> FitData {
+    pub fn joined(&self, other: &FitProblem) -> FitProblem {
         let mut joined = self.clone();
         let moved = other.windows.iter().map(|window| Window {
             motion: window.motion + self.motions.len(),
@@ -151,7 +151,7 @@ impl FitData {
     }
 
     /// Some of the motions, cut as they are here.
-    pub fn part(&self, wanted: impl Fn(usize) -> bool) -> FitData {
+    pub fn part(&self, wanted: impl Fn(usize) -> bool) -> FitProblem {
         let kept: Vec<usize> = (0..self.motions.len()).filter(|&m| wanted(m)).collect();
         let windows = kept.iter().enumerate().flat_map(|(index, &motion)| {
             self.windows_of(motion).map(move |(_, window)| Window {
@@ -159,7 +159,7 @@ impl FitData {
                 samples: window.samples.clone(),
             })
         });
-        FitData {
+        FitProblem {
             windows: windows.collect(),
             motions: kept.iter().map(|&m| self.motions[m].clone()).collect(),
             signals: self.signals.clone(),
@@ -209,8 +209,8 @@ impl FitData {
     }
 
     /// The start state that the samples around a window's start suggest.
-    pub fn guessed(&self, window: &Window) -> Node {
-        self.guess(window).node
+    pub fn guessed(&self, window: &Window) -> WindowStart {
+        self.guess(window).window_start
     }
 
     /// The same with how sure it is.
@@ -221,15 +221,23 @@ impl FitData {
 
     /// The start states of windows of `other`, the same motions cut otherwise, that begin where
     /// windows of this data do; elsewhere what the samples suggest.
-    pub fn nodes_from(&self, other: &FitData, nodes: &[Node]) -> Vec<Node> {
+    pub fn nodes_from(
+        &self,
+        other: &FitProblem,
+        window_starts: &[WindowStart],
+    ) -> Vec<WindowStart> {
         let begins = |window: &Window| (window.motion, window.samples.start);
-        let known: HashMap<(usize, usize), &Node> =
-            other.windows.iter().map(begins).zip(nodes).collect();
-        let node = |window: &Window| match known.get(&begins(window)) {
-            Some(&node) => node.clone(),
+        let known: HashMap<(usize, usize), &WindowStart> = other
+            .windows
+            .iter()
+            .map(begins)
+            .zip(window_starts)
+            .collect();
+        let window_start = |window: &Window| match known.get(&begins(window)) {
+            Some(&window_start) => window_start.clone(),
             None => self.guessed(window),
         };
-        self.windows.iter().map(node).collect()
+        self.windows.iter().map(window_start).collect()
     }
 
     /// Number of samples in all windows.

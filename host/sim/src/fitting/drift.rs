@@ -1,7 +1,7 @@
 //! Whether values differ from session to session, or from servo to servo: each log fitted by
 //! itself, then a test of homogeneity (Cochran 1954, Biometrics 10, 101).
 
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fitted_value::FittedValue;
 use super::horizon::Horizon;
 use super::refit::{Undetermined, told_apart};
@@ -81,7 +81,7 @@ pub fn drift(
 ) -> DriftReport {
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let fitted = sessions.par_iter().map(|session| {
-        let data = FitData::new(model, session.motions.clone(), horizon);
+        let data = FitProblem::new(model, session.motions.clone(), horizon);
         let found = best_fit(model, free, &data);
         told_apart(&found)?;
         told_values(stated(found, &data), &data)

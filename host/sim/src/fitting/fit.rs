@@ -1,9 +1,9 @@
 //! A model fitted to motions: options and result.
 
-use super::data::FitData;
-use super::node::Node;
+use super::data::FitProblem;
 use super::normal::WindowJacobian;
 use super::residual::Residuals;
+use super::window_start::WindowStart;
 use crate::model::{Model, ParameterPath};
 
 /// When to stop.
@@ -66,7 +66,7 @@ pub struct Fit {
     /// What was free.
     pub free: Vec<ParameterPath>,
     /// Start state of every window.
-    pub nodes: Vec<Node>,
+    pub window_starts: Vec<WindowStart>,
     /// Weighted residuals at the end.
     pub residuals: Residuals,
     /// Whether the tolerance was met before the iterations ran out.
@@ -98,7 +98,7 @@ impl Fit {
 
     /// Root-mean-square error, rad, over all joints with a measured angle and every sample of
     /// `data` that was measured, rad/s where no angle is; `data` are those of the fit.
-    pub fn rms(&self, data: &FitData) -> f64 {
+    pub fn rms(&self, data: &FitProblem) -> f64 {
         let (mut sum, mut count) = (0.0, 0usize);
         for (window, residuals) in data.windows.iter().zip(&self.residuals.windows) {
             let signals = residuals.chunks(window.samples.len()).enumerate();

@@ -1,7 +1,7 @@
 //! Fitted values with their intervals.
 
 use super::covariance::{Interval, intervals};
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::Fit;
 use super::profile::profile_intervals;
 use crate::output::number::measured;
@@ -37,21 +37,21 @@ impl fmt::Display for FittedValue {
 
 /// The fitted values with intervals by profile likelihood, and their correlation matrix. Where the
 /// data do not determine the values there is no matrix, and the bounds stand for the intervals.
-pub fn fitted_values(fit: &Fit, data: &FitData) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
+pub fn fitted_values(fit: &Fit, data: &FitProblem) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
     with_intervals(fit, data, |local| profile_intervals(fit, data, &local))
 }
 
 /// The same with the intervals that the derivatives give, without a simulation.
 pub fn locally_fitted_values(
     fit: &Fit,
-    data: &FitData,
+    data: &FitProblem,
 ) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
     with_intervals(fit, data, |local| local)
 }
 
 fn with_intervals(
     fit: &Fit,
-    data: &FitData,
+    data: &FitProblem,
     widened: impl FnOnce(Vec<Interval>) -> Vec<Interval>,
 ) -> (Vec<FittedValue>, Option<DMatrix<f64>>) {
     let (intervals, correlation) = match intervals(fit, data) {

@@ -7,10 +7,10 @@
 
 use super::assumed::AssumedStates;
 use super::horizon::{Horizon, Window};
-use super::node::Node;
+use super::window_start::WindowStart;
 use crate::model::Model;
 use crate::motion::Motion;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, PlantMemory, StartState, predict};
 use nalgebra::DMatrix;
 
 /// Growth of a small start error beyond which a run says little about the model.
@@ -25,7 +25,7 @@ const LEAST_S: f64 = 0.1;
 const LEAST_SAMPLES: usize = 8;
 
 /// The longest windows of a motion in which no start error grows more than thirty times; the whole
-/// motion where none does. `sigma` as in [`super::FitData`].
+/// motion where none does. `sigma` as in [`super::FitProblem`].
 pub(super) fn stable_horizon(
     model: &Model,
     sigma: &[f64],
@@ -54,7 +54,7 @@ impl Growth {
         let transition = |piece: usize| {
             let samples = edge(piece)..(edge(piece + 1) + 1).min(motion.len());
             let window = Window { motion: 0, samples };
-            let start = Node::guess(motion, sigma, assumed, &window).start(&plant);
+            let start = WindowStart::guess(motion, sigma, assumed, &window).start(&plant);
             transition(&plant, motion, &window, &start)
         };
         Growth {
@@ -105,7 +105,7 @@ impl Growth {
 }
 
 /// How the state at a window's end follows the one at its start.
-fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &Start) -> DMatrix<f64> {
+fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &StartState) -> DMatrix<f64> {
     let joints = plant.len();
     let mut readings = vec![0.0; plant.signals() * window.samples.len()];
     let mut end = |moved: Option<usize>| {
@@ -115,7 +115,7 @@ fn transition(plant: &Plant, motion: &Motion, window: &Window, start: &Start) ->
             Some(i) => from.speed_rad_s[i - joints] += DIFFERENCE,
             None => {}
         }
-        let (samples, mut memory) = (window.samples.clone(), Memory::default());
+        let (samples, mut memory) = (window.samples.clone(), PlantMemory::default());
         let to = predict(plant, motion, samples, &from, &mut memory, &mut readings);
         [to.angle_rad, to.speed_rad_s].concat()
     };

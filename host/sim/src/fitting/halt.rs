@@ -56,9 +56,9 @@ pub struct Halted;
 
 /// What ends the fits to data that know it; none by default.
 #[derive(Clone, Default)]
-pub struct Halt(Option<Arc<Watch>>);
+pub struct Halt(Option<Arc<HaltState>>);
 
-struct Watch {
+struct HaltState {
     begun: Instant,
     switch: StopSwitch,
     /// Whether an accepted result ends the work.
@@ -81,19 +81,19 @@ impl Halt {
     /// By this switch; nothing ends it but [`StopSwitch::abandon`] until it
     /// [heeds](Halt::ends_at) more. The clock starts.
     pub fn by(switch: &StopSwitch) -> Halt {
-        Halt::watching(Watch::of(switch))
+        Halt::watching(HaltState::of(switch))
     }
 
     /// The same, which shows every run it counts.
     #[cfg(any(test, feature = "testkit"))]
     pub fn seen(switch: &StopSwitch, sees: impl Fn(usize) + Send + Sync + 'static) -> Halt {
-        Halt::watching(Watch {
+        Halt::watching(HaltState {
             sees: Some(Box::new(sees)),
-            ..Watch::of(switch)
+            ..HaltState::of(switch)
         })
     }
 
-    fn watching(watch: Watch) -> Halt {
+    fn watching(watch: HaltState) -> Halt {
         Halt(Some(Arc::new(watch)))
     }
 
@@ -123,7 +123,7 @@ impl Halt {
 
     /// Whether the work is to end.
     pub fn is_on(&self) -> bool {
-        self.0.as_deref().is_some_and(Watch::is_on)
+        self.0.as_deref().is_some_and(HaltState::is_on)
     }
 
     /// Counts a run that begins; unwinds where the work is to end.
@@ -159,9 +159,9 @@ impl Halt {
     }
 }
 
-impl Watch {
-    fn of(switch: &StopSwitch) -> Watch {
-        Watch {
+impl HaltState {
+    fn of(switch: &StopSwitch) -> HaltState {
+        HaltState {
             begun: Instant::now(),
             switch: switch.clone(),
             heeds: AtomicBool::new(false),
@@ -183,7 +183,7 @@ impl Watch {
 mod tests {
     use super::*;
     use crate::fitting::log_tests::{ANGLE, even, pendulum, swing};
-    use crate::fitting::{FitData, FitOptions, Horizon, fit};
+    use crate::fitting::{FitOptions, FitProblem, Horizon, fit};
 
     /// Runs of a fit of friction to two swings; the switch is pressed at one of them.
     fn runs(press_at: usize, press: impl Fn(&StopSwitch) + Send + Sync + 'static) -> usize {
@@ -200,7 +200,7 @@ mod tests {
             }
         });
         halt.ends_at(None, true);
-        let data = FitData::new(&believed, motions.to_vec(), Horizon::Seconds(1.0));
+        let data = FitProblem::new(&believed, motions.to_vec(), Horizon::Seconds(1.0));
         let data = data.halted_by(&halt);
         let friction = "coulomb@1.torque_nm".parse().unwrap();
         let fitted = || fit(&believed, &[friction], &data, None, FitOptions::default());

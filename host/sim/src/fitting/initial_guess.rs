@@ -2,11 +2,11 @@
 //! each.
 
 use super::candidate::Candidate;
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::Fit;
-use super::node::Node;
 use super::projector::Projector;
 use super::residual::residuals;
+use super::window_start::WindowStart;
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 
@@ -59,7 +59,7 @@ pub fn changes(
     from: &Fit,
     candidate: Candidate,
     sizes: Sizes,
-    data: &FitData,
+    data: &FitProblem,
 ) -> Vec<PredictionChange> {
     simulated(
         from,
@@ -85,7 +85,11 @@ fn starts(candidate: Candidate) -> Vec<Vec<f64>> {
 const FEW_SHAPES: usize = 4;
 
 /// The changes of all starts of this shape, each as it is and small.
-pub fn changes_like(from: &Fit, like: &PredictionChange, data: &FitData) -> Vec<PredictionChange> {
+pub fn changes_like(
+    from: &Fit,
+    like: &PredictionChange,
+    data: &FitProblem,
+) -> Vec<PredictionChange> {
     let wanted = shape(like.candidate, &like.start);
     let mut starts = like.candidate.starts();
     starts.retain(|start| shape(like.candidate, start) == wanted);
@@ -97,11 +101,18 @@ fn simulated(
     from: &Fit,
     candidate: Candidate,
     starts: &[Vec<f64>],
-    data: &FitData,
+    data: &FitProblem,
 ) -> Vec<PredictionChange> {
     let before = &from.residuals.windows;
     let changes = starts.iter().map(|start| PredictionChange {
-        windows: change(&from.model, candidate, start, data, &from.nodes, before),
+        windows: change(
+            &from.model,
+            candidate,
+            start,
+            data,
+            &from.window_starts,
+            before,
+        ),
         candidate,
         start: start.clone(),
     });
@@ -269,13 +280,13 @@ pub fn change(
     model: &Model,
     candidate: Candidate,
     values: &[f64],
-    data: &FitData,
-    nodes: &[Node],
+    data: &FitProblem,
+    window_starts: &[WindowStart],
     before: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
     let mut model = model.clone();
     model.effects.push(candidate.instance(values));
-    let after = residuals(&model, data, nodes).windows;
+    let after = residuals(&model, data, window_starts).windows;
     let difference = |(before, after): (&Vec<f64>, &Vec<f64>)| {
         before.iter().zip(after).map(|(b, a)| b - a).collect()
     };

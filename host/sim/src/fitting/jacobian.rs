@@ -25,8 +25,8 @@ impl LevenbergMarquardt<'_> {
     /// Derivatives at the present values, window by window.
     pub fn jacobian(&mut self) -> Vec<WindowJacobian> {
         let parameters = self.fit.free.len();
-        let node = self.fit.nodes.first();
-        let unknowns = node.map_or(0, |node| node.unknowns.len());
+        let window_start = self.fit.window_starts.first();
+        let unknowns = window_start.map_or(0, |window_start| window_start.unknowns.len());
         // Without a sensor that trails, a start's acceleration changes nothing.
         let orders = if self.fit.model.trails() { 3 } else { 2 };
         let joints = self.data.joints();
@@ -62,7 +62,7 @@ impl LevenbergMarquardt<'_> {
                     differences.of(base, motion, at, row, column)
                 }
             });
-            self.window(w, parameters, known.node.clone())
+            self.window(w, parameters, known.window_start.clone())
         });
         windows.collect()
     }
@@ -108,13 +108,18 @@ impl LevenbergMarquardt<'_> {
         })
     }
 
-    fn window(&self, w: usize, parameters: DMatrix<f64>, node: DMatrix<f64>) -> WindowJacobian {
-        let (guess, own) = (&self.guesses[w], &self.fit.nodes[w]);
+    fn window(
+        &self,
+        w: usize,
+        parameters: DMatrix<f64>,
+        window_start: DMatrix<f64>,
+    ) -> WindowJacobian {
+        let (guess, own) = (&self.guesses[w], &self.fit.window_starts[w]);
         let (node_precision, node_pull) = guess.prior(own);
         let mut window = WindowJacobian {
             residual: DVector::from_column_slice(&self.fit.residuals.windows[w]),
             parameters,
-            node,
+            window_start,
             node_precision,
             node_pull,
             node_edge: guess.edges(own),
@@ -133,7 +138,7 @@ impl LevenbergMarquardt<'_> {
         let mut model = fit.model.clone();
         let known = path.set(&mut model, value + delta);
         debug_assert!(known, "a free parameter is one of the model's");
-        let shifted = motion_residuals(&model, self.data, &fit.nodes, motion);
+        let shifted = motion_residuals(&model, self.data, &fit.window_starts, motion);
         (vec![delta; shifted.len()], shifted)
     }
 
@@ -151,14 +156,14 @@ impl LevenbergMarquardt<'_> {
             }
             Some((HiddenQuantity::Rate, joint)) => step(1, joint),
         };
-        let mut nodes = fit.nodes.clone();
+        let mut window_starts = fit.window_starts.clone();
         let mut deltas = Vec::new();
         for (index, _) in self.data.windows_of(motion) {
-            let value = &mut nodes[index].unknowns[unknown];
+            let value = &mut window_starts[index].unknowns[unknown];
             deltas.push(delta(*value));
             *value += delta(*value);
         }
-        let shifted = motion_residuals(&fit.model, self.data, &nodes, motion);
+        let shifted = motion_residuals(&fit.model, self.data, &window_starts, motion);
         (deltas, shifted)
     }
 }

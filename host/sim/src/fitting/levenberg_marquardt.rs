@@ -1,18 +1,18 @@
 //! Bounded least squares by Levenberg-Marquardt on the multiple-shooting residual: Levenberg
 //! (1944), Marquardt (1963).
 
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
-use super::node::{Node, StartGuess};
 use super::normal::NormalEquations;
 use super::residual::{left_hidden, residuals};
+use super::window_start::{StartGuess, WindowStart};
 use crate::sim::HiddenUnknown;
 use nalgebra::DVector;
 
 /// A fit under way.
 pub(super) struct LevenbergMarquardt<'a> {
     pub fit: Fit,
-    pub data: &'a FitData,
+    pub data: &'a FitProblem,
     pub guesses: Vec<StartGuess>,
     /// What no reading tells of where a window begins.
     pub hidden: Vec<HiddenUnknown>,
@@ -25,7 +25,7 @@ struct DescentStep {
     /// The same for a residual that is linear.
     predicted: f64,
     values: DVector<f64>,
-    nodes: Vec<DVector<f64>>,
+    window_starts: Vec<DVector<f64>>,
 }
 
 /// A reduction within this share of the predicted one, either way, speaks for the derivatives.
@@ -41,21 +41,28 @@ const DAMPING: f64 = 1e-3;
 
 impl<'a> LevenbergMarquardt<'a> {
     /// Goes on from where `fit` stands.
-    pub fn new(mut fit: Fit, data: &'a FitData, mut guesses: Vec<StartGuess>) -> Self {
+    pub fn new(mut fit: Fit, data: &'a FitProblem, mut guesses: Vec<StartGuess>) -> Self {
         let hidden = data.hidden(&fit.model);
         let unknowns = 3 * data.joints() + hidden.len();
-        if fit.nodes.iter().any(|node| node.unknowns.len() != unknowns) {
+        if fit
+            .window_starts
+            .iter()
+            .any(|window_start| window_start.unknowns.len() != unknowns)
+        {
             // Of a model that hides something else.
-            (fit.nodes.iter_mut()).for_each(|node| node.forget_hidden(data.joints()));
+            (fit.window_starts.iter_mut())
+                .for_each(|window_start| window_start.forget_hidden(data.joints()));
             fit.jacobian.clear();
         }
         if !hidden.is_empty() {
-            let left = left_hidden(&fit.model, data, &fit.nodes);
-            for ((node, guess), left) in fit.nodes.iter_mut().zip(&mut guesses).zip(&left) {
+            let left = left_hidden(&fit.model, data, &fit.window_starts);
+            for ((window_start, guess), left) in
+                fit.window_starts.iter_mut().zip(&mut guesses).zip(&left)
+            {
                 guess.hide(&hidden, left);
-                node.hide_as(guess);
+                window_start.hide_as(guess);
             }
-            fit.residuals = residuals(&fit.model, data, &fit.nodes);
+            fit.residuals = residuals(&fit.model, data, &fit.window_starts);
             fit.simulations += 2;
         }
         LevenbergMarquardt {
@@ -119,8 +126,9 @@ impl<'a> LevenbergMarquardt<'a> {
     /// Whether fresh derivatives cost next to nothing: few unknowns, or few samples, whose valleys
     /// are many and narrow.
     fn is_cheap(&self) -> bool {
-        let node = self.fit.nodes.first();
-        self.fit.free.len() + node.map_or(0, |node| node.unknowns.len()) <= CHEAP
+        let window_start = self.fit.window_starts.first();
+        self.fit.free.len() + window_start.map_or(0, |window_start| window_start.unknowns.len())
+            <= CHEAP
             || self.data.samples() < FEW_SAMPLES
     }
 
@@ -134,23 +142,27 @@ impl<'a> LevenbergMarquardt<'a> {
     fn correct(&mut self, step: &DescentStep) {
         let fit = &mut self.fit;
         for (w, window) in fit.jacobian.iter_mut().enumerate() {
-            let (guess, node) = (&self.guesses[w], &fit.nodes[w]);
-            window.correct(&step.values, &step.nodes[w], &fit.residuals.windows[w]);
-            (window.node_precision, window.node_pull) = guess.prior(node);
-            window.node_edge = guess.edges(node);
+            let (guess, window_start) = (&self.guesses[w], &fit.window_starts[w]);
+            window.correct(
+                &step.values,
+                &step.window_starts[w],
+                &fit.residuals.windows[w],
+            );
+            (window.node_precision, window.node_pull) = guess.prior(window_start);
+            window.node_edge = guess.edges(window_start);
             window.hold_edges();
         }
     }
 
     /// Squared residuals plus the nodes' weak priors.
     fn cost(&self) -> f64 {
-        self.fit.residuals.cost() + self.prior_cost(&self.fit.nodes)
+        self.fit.residuals.cost() + self.prior_cost(&self.fit.window_starts)
     }
 
-    fn prior_cost(&self, nodes: &[Node]) -> f64 {
+    fn prior_cost(&self, window_starts: &[WindowStart]) -> f64 {
         let mut sum = 0.0;
-        for (node, guess) in nodes.iter().zip(&self.guesses) {
-            let (precision, pull) = guess.prior(node);
+        for (window_start, guess) in window_starts.iter().zip(&self.guesses) {
+            let (precision, pull) = guess.prior(window_start);
             sum += precision.component_mul(&pull).dot(&pull);
         }
         sum
@@ -164,23 +176,27 @@ impl<'a> LevenbergMarquardt<'a> {
             let free = self.fit.free.len();
             let normal = NormalEquations::assemble(free, &self.fit.jacobian, *damping);
             let (model, values) = self.moved(&normal, *damping);
-            let mut nodes = self.fit.nodes.clone();
-            let steps: Vec<DVector<f64>> = nodes
+            let mut window_starts = self.fit.window_starts.clone();
+            let steps: Vec<DVector<f64>> = window_starts
                 .iter_mut()
                 .enumerate()
-                .map(|(w, node)| self.move_node(node, w, &normal.node_step(w, &values)))
+                .map(|(w, window_start)| {
+                    self.move_node(window_start, w, &normal.node_step(w, &values))
+                })
                 .collect();
-            let residuals = residuals(&model, self.data, &nodes);
+            let residuals = residuals(&model, self.data, &window_starts);
             self.fit.simulations += 1;
-            let prior = self.prior_cost(&nodes);
+            let prior = self.prior_cost(&window_starts);
             let after = residuals.cost() + prior;
             if after < before {
                 let windows = self.fit.jacobian.iter().zip(&steps);
                 let linear: f64 = windows
-                    .map(|(window, node)| window.linear_residual(&values, node).norm_squared())
+                    .map(|(window, window_start)| {
+                        window.linear_residual(&values, window_start).norm_squared()
+                    })
                     .sum();
                 self.fit.model = model;
-                self.fit.nodes = nodes;
+                self.fit.window_starts = window_starts;
                 self.fit.residuals = residuals;
                 self.fit.fresh = false;
                 *damping = (*damping / 8.0).max(1e-9);
@@ -188,7 +204,7 @@ impl<'a> LevenbergMarquardt<'a> {
                     reduction: before - after,
                     predicted: before - (linear + prior),
                     values,
-                    nodes: steps,
+                    window_starts: steps,
                 });
             }
             *damping = (*damping * 6.0).max(1e-6);
@@ -197,10 +213,15 @@ impl<'a> LevenbergMarquardt<'a> {
     }
 
     /// Moves a window's start state as far as it may go, and says how far that was.
-    fn move_node(&self, node: &mut Node, window: usize, step: &DVector<f64>) -> DVector<f64> {
-        let from = node.unknowns.clone();
-        node.unknowns += step;
-        self.guesses[window].clamp(node);
-        &node.unknowns - from
+    fn move_node(
+        &self,
+        window_start: &mut WindowStart,
+        window: usize,
+        step: &DVector<f64>,
+    ) -> DVector<f64> {
+        let from = window_start.unknowns.clone();
+        window_start.unknowns += step;
+        self.guesses[window].clamp(window_start);
+        &window_start.unknowns - from
     }
 }

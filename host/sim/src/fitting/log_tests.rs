@@ -5,7 +5,7 @@ use super::*;
 use crate::effects::named;
 use crate::model::{ColumnMean, EffectInstance, MeasuredSignal, Model, ParameterPath};
 use crate::motion::{Motion, Split};
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, PlantMemory, StartState, predict};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
@@ -39,14 +39,14 @@ pub(super) fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motio
         time_s,
         ..Motion::default()
     };
-    let start = Start {
+    let start = StartState {
         angle_rad: angle_rad.to_vec(),
         speed_rad_s: vec![0.0; joints],
-        ..Start::default()
+        ..StartState::default()
     };
     let plant = Plant::new(model, &motion);
     let mut readings = vec![0.0; plant.signals() * motion.len()];
-    let mut memory = Memory::default();
+    let mut memory = PlantMemory::default();
     let whole = 0..motion.len();
     predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
     let (of_joints, of_rates) = readings.split_at(joints * motion.len());
@@ -126,10 +126,10 @@ fn missing_samples_are_not_compared_and_do_not_count() {
     }
     let missing = motion.position_rad[0].iter().filter(|q| q.is_nan()).count();
     let model = pendulum(ANGLE, 0.006);
-    let data = |motion| FitData::new(&model, vec![motion], Horizon::Whole);
+    let data = |motion| FitProblem::new(&model, vec![motion], Horizon::Whole);
     let (gapped, all) = (data(motion.clone()), data(whole));
     assert_eq!(gapped.gaps(), missing);
-    let count = |data: &FitData| fit_start_states(&model, data).residuals.count();
+    let count = |data: &FitProblem| fit_start_states(&model, data).residuals.count();
     assert_eq!(count(&gapped) + missing, count(&all));
     assert_found(&friction(ANGLE, vec![motion]), 0.02);
 }

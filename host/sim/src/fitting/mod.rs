@@ -26,12 +26,12 @@ mod horizon;
 mod information;
 mod initial_guess;
 mod jacobian;
+mod jumping_law;
 mod least_horizon;
 mod levenberg_marquardt;
 #[cfg(test)]
 mod log_tests;
 mod mixture;
-mod node;
 mod noise;
 mod normal;
 mod polish;
@@ -47,12 +47,12 @@ mod search_windows;
 mod sensor_tests;
 mod solve;
 mod staged;
-mod stairs;
 mod step;
 mod step_size;
 mod student;
 mod told_values;
 mod ways;
+mod window_start;
 mod windows;
 
 pub use add::{
@@ -60,7 +60,7 @@ pub use add::{
 };
 pub use candidate::{Candidate, CandidateError, effect_ids, effect_named};
 pub use covariance::{Interval, intervals, intervals_of};
-pub use data::FitData;
+pub use data::FitProblem;
 pub use drift::{Drift, DriftReport, DriftSession, OneValue, drift};
 pub use error_reduction::ErrorReduction;
 pub use fit::{Fit, FitOptions};
@@ -74,8 +74,8 @@ pub use information::Information;
 pub use initial_guess::{
     InitialGuess, PredictionChange, ProjectedResidual, Sizes, change, changes, changes_like,
 };
+pub use jumping_law::{choose_by_other_motions, descend_jumping_law};
 pub use least_horizon::HorizonTooShort;
-pub use node::Node;
 pub use noise::{Noise, estimated_resolution, noise};
 pub use polish::polish;
 pub use profile::profile_intervals;
@@ -84,10 +84,10 @@ pub use projector::Projector;
 pub use refit::{NotAdded, Refitted, Undetermined, refit, refit_from, refit_with};
 pub use residual::{Residuals, predicted, residuals};
 pub use search_windows::{is_followed, search_horizons};
-pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_nodes};
+pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_window_starts};
 pub use staged::fit_through_stages;
-pub use stairs::{down_the_stairs, told_by_others};
 pub use step_size::coarsened;
 pub use student::quantile_975;
 pub use ways::{best_fit, stated, stated_from};
+pub use window_start::WindowStart;
 pub use windows::{MotionWindow, in_windows};

@@ -33,8 +33,8 @@ pub(super) struct WindowJacobian {
     pub residual: DVector<f64>,
     /// d(prediction) / d(parameter), weighted.
     pub parameters: DMatrix<f64>,
-    /// d(prediction) / d(node), weighted.
-    pub node: DMatrix<f64>,
+    /// d(prediction) / d(window_start), weighted.
+    pub window_start: DMatrix<f64>,
     /// Prior on the node: precision of each unknown and its pull towards the guess.
     pub node_precision: DVector<f64>,
     pub node_pull: DVector<f64>,
@@ -45,12 +45,13 @@ pub(super) struct WindowJacobian {
 impl WindowJacobian {
     /// Node by node, the prior included.
     fn node_normal(&self) -> DMatrix<f64> {
-        self.node.tr_mul(&self.node) + DMatrix::from_diagonal(&self.node_precision)
+        self.window_start.tr_mul(&self.window_start) + DMatrix::from_diagonal(&self.node_precision)
     }
 
     /// Node rows of the descent direction, the prior included.
     fn node_gradient(&self) -> DVector<f64> {
-        self.node.tr_mul(&self.residual) + self.node_precision.component_mul(&self.node_pull)
+        self.window_start.tr_mul(&self.residual)
+            + self.node_precision.component_mul(&self.node_pull)
     }
 
     fn node_cholesky(&self) -> Option<Cholesky<f64, Dyn>> {
@@ -62,8 +63,8 @@ impl WindowJacobian {
         let Some(cholesky) = self.node_cholesky() else {
             return self.parameters.clone();
         };
-        let coupling = cholesky.solve(&self.node.tr_mul(&self.parameters));
-        &self.parameters - &self.node * coupling
+        let coupling = cholesky.solve(&self.window_start.tr_mul(&self.parameters));
+        &self.parameters - &self.window_start * coupling
     }
 
     /// Squared residuals less what the window's own start state can remove.
@@ -82,8 +83,8 @@ impl WindowJacobian {
         let Some(cholesky) = self.node_cholesky() else {
             return change;
         };
-        let step = cholesky.solve(&self.node.tr_mul(&change));
-        change - &self.node * step
+        let step = cholesky.solve(&self.window_start.tr_mul(&change));
+        change - &self.window_start * step
     }
 
     /// Takes unknowns out of the step that lie on their edge and would leave by it.
@@ -91,7 +92,7 @@ impl WindowJacobian {
         let gradient = self.node_gradient();
         for i in 0..self.node_edge.len() {
             if self.node_edge[i] * gradient[i] > 0.0 {
-                self.node.column_mut(i).fill(0.0);
+                self.window_start.column_mut(i).fill(0.0);
                 self.node_pull[i] = 0.0;
             }
         }
@@ -116,7 +117,7 @@ impl NormalEquations {
             let inverse = own
                 .try_inverse()
                 .unwrap_or_else(|| DMatrix::zeros(size, size));
-            let coupling = window.node.tr_mul(&window.parameters);
+            let coupling = window.window_start.tr_mul(&window.parameters);
             let gradient = window.node_gradient();
             let spent = coupling.tr_mul(&inverse);
             normal.matrix += window.parameters.tr_mul(&window.parameters) - &spent * &coupling;

@@ -7,12 +7,12 @@
 
 use super::cluster::clusters;
 use super::covariance::{Interval, inverse};
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::Fit;
-use super::node::Node;
+use super::jumping_law;
 use super::normal::NormalEquations;
 use super::residual::residuals;
-use super::stairs;
+use super::window_start::WindowStart;
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ const REACHES: [f64; 8] = [1.3, 1.7, 2.2, 2.8, 3.6, 4.6, 6.0, 8.0];
 /// The intervals, each end moved out to the farthest value at which the squared error is no larger
 /// than a smooth one would be at the end. The other values and the start states go along as they
 /// would if all were straight, or, where a law jumps, are fitted there.
-pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> Vec<Interval> {
+pub fn profile_intervals(fit: &Fit, data: &FitProblem, intervals: &[Interval]) -> Vec<Interval> {
     let count = fit.free.len();
     let sum = |sum: DMatrix<f64>, cluster: &super::cluster::Cluster| sum + &cluster.information;
     let normal = clusters(fit, data)
@@ -34,7 +34,7 @@ pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> V
     };
     let steps = NormalEquations::assemble(count, &fit.jacobian, 0.0);
     let least = fit.residuals.cost();
-    let jumps = fit.free.iter().any(stairs::jumps);
+    let jumps = fit.free.iter().any(jumping_law::jumps);
     intervals
         .par_iter()
         .enumerate()
@@ -65,15 +65,19 @@ pub fn profile_intervals(fit: &Fit, data: &FitData, intervals: &[Interval]) -> V
 }
 
 /// Squared weighted residuals with the values moved; infinite where one leaves its bounds.
-fn cost(fit: &Fit, data: &FitData, steps: &NormalEquations, by: &DVector<f64>) -> f64 {
-    moved(fit, steps, by).map_or(f64::INFINITY, |(model, nodes)| {
-        residuals(&model, data, &nodes).cost()
+fn cost(fit: &Fit, data: &FitProblem, steps: &NormalEquations, by: &DVector<f64>) -> f64 {
+    moved(fit, steps, by).map_or(f64::INFINITY, |(model, window_starts)| {
+        residuals(&model, data, &window_starts).cost()
     })
 }
 
 /// The model with its values moved and the start states that go along; none where a value leaves
 /// its bounds.
-fn moved(fit: &Fit, steps: &NormalEquations, by: &DVector<f64>) -> Option<(Model, Vec<Node>)> {
+fn moved(
+    fit: &Fit,
+    steps: &NormalEquations,
+    by: &DVector<f64>,
+) -> Option<(Model, Vec<WindowStart>)> {
     let mut model = fit.model.clone();
     for (path, by) in fit.free.iter().zip(by.iter()) {
         let value = path.get(&fit.model)? + by;
@@ -81,9 +85,9 @@ fn moved(fit: &Fit, steps: &NormalEquations, by: &DVector<f64>) -> Option<(Model
         let is_possible = (low..=high).contains(&value) && path.set(&mut model, value);
         is_possible.then_some(())?;
     }
-    let mut nodes = fit.nodes.clone();
-    for (window, node) in nodes.iter_mut().enumerate() {
-        node.unknowns += steps.node_step(window, by);
+    let mut window_starts = fit.window_starts.clone();
+    for (window, window_start) in window_starts.iter_mut().enumerate() {
+        window_start.unknowns += steps.node_step(window, by);
     }
-    Some((model, nodes))
+    Some((model, window_starts))
 }

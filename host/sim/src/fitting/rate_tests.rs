@@ -161,7 +161,7 @@ fn other_readings_take_the_place_of_what_is_measured() {
     for columns in [COARSE, RATE, &both()] {
         let model = pendulum(columns, 0.006);
         let motion = swing(&model, &[1.0], even(100, 100.0));
-        let data = FitData::new(&model, vec![motion], Horizon::Whole);
+        let data = FitProblem::new(&model, vec![motion], Horizon::Whole);
         let length = data.signals.len() * data.windows[0].samples.len();
         let other = data.clone().measuring(&[vec![vec![0.25; length]]]);
         for signal in 0..data.signals.len() {

@@ -5,16 +5,16 @@
 mod tests;
 
 use super::added::AddedEffects;
-use super::data::FitData;
+use super::data::FitProblem;
 use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::FittedValue;
 use super::horizon::Horizon;
+use super::jumping_law::choose_by_other_motions;
 use super::mixture::untold_mixture;
 use super::polish::polish;
 use super::progress::{Progress, RefitSteps};
 use super::solve::fit_start_states;
-use super::stairs::told_by_others;
 use super::told_values::{ToldValues, told_values};
 use super::ways::{best_fit, stated};
 use super::windows::MotionWindow;
@@ -130,7 +130,7 @@ pub fn refit(
     let steps = RefitSteps::new(0);
     progress(steps.fitting());
     let horizon = horizon.unwrap_or(Horizon::Whole);
-    let data = FitData::new(model, split.training.clone(), horizon);
+    let data = FitProblem::new(model, split.training.clone(), horizon);
     let found = best_fit(model, free, &data);
     told_apart(&found)?;
     progress(steps.settling());
@@ -200,7 +200,7 @@ pub fn refit_from(
     progress: &dyn Fn(Progress),
 ) -> Result<Refitted, NotAdded> {
     let horizon = horizon.unwrap_or(Horizon::Whole);
-    let data = FitData::new(model, split.training.clone(), horizon);
+    let data = FitProblem::new(model, split.training.clone(), horizon);
     let mut free = model.free.clone();
     let own = candidates
         .iter()
@@ -244,7 +244,7 @@ pub fn refit_from(
 struct Refit<'a> {
     /// The fit that leaves the error before.
     before: Fit,
-    data: FitData,
+    data: FitProblem,
     split: &'a Split,
     horizon: Horizon,
 }
@@ -257,11 +257,11 @@ impl Refit<'_> {
         let model = &self.before.model;
         let held_out = (!self.split.held_out.is_empty()).then(|| {
             let held_out = self.split.held_out.clone();
-            FitData::new(model, held_out, self.horizon).weighted_like(data)
+            FitProblem::new(model, held_out, self.horizon).weighted_like(data)
         });
         let mut found = stated(found, data);
         if let Some(judged) = &held_out {
-            found = told_by_others(found, data, judged);
+            found = choose_by_other_motions(found, data, judged);
         }
         let mut unobserved = model.log.notes();
         let ToldValues {
@@ -271,7 +271,7 @@ impl Refit<'_> {
         } = told_values(found, data)?;
         unobserved.extend(held);
         let fitted = self.error_on_fitted(&found);
-        let rms_rad = |model: &Model, data: &FitData| fit_start_states(model, data).rms(data);
+        let rms_rad = |model: &Model, data: &FitProblem| fit_start_states(model, data).rms(data);
         let mut windows = data.motion_windows(self.horizon);
         windows.extend(
             held_out

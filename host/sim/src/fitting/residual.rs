@@ -1,9 +1,9 @@
 //! Predicted readings and weighted residuals of a model, window by window.
 
-use super::data::FitData;
-use super::node::Node;
+use super::data::FitProblem;
+use super::window_start::WindowStart;
 use crate::model::{MeasuredSignal, Model};
-use crate::sim::{Memory, Plant, predict};
+use crate::sim::{Plant, PlantMemory, predict};
 use rayon::prelude::*;
 
 /// Weighted residuals, (measured - predicted) / sigma; one vector per window, signal after signal.
@@ -65,10 +65,10 @@ impl Residuals {
 }
 
 /// Residuals of a model from these nodes, motions in parallel.
-pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
+pub fn residuals(model: &Model, data: &FitProblem, window_starts: &[WindowStart]) -> Residuals {
     let per_motion: Vec<Vec<Vec<f64>>> = (0..data.motions.len())
         .into_par_iter()
-        .map(|motion| motion_residuals(model, data, nodes, motion))
+        .map(|motion| motion_residuals(model, data, window_starts, motion))
         .collect();
     Residuals {
         gaps: data.gaps(),
@@ -79,31 +79,36 @@ pub fn residuals(model: &Model, data: &FitData, nodes: &[Node]) -> Residuals {
 /// What a model predicts for one motion's windows, in order, signal after signal: readings, rad,
 /// and rates, rad/s, of joints whose rate alone is logged and of rate sensors beside an angle's.
 /// Every window starts from its node, and the memory runs on from window to window.
-pub fn predicted(model: &Model, data: &FitData, nodes: &[Node], motion: usize) -> Vec<Vec<f64>> {
-    predicted_seen(model, data, nodes, motion, |_| {})
+pub fn predicted(
+    model: &Model,
+    data: &FitProblem,
+    window_starts: &[WindowStart],
+    motion: usize,
+) -> Vec<Vec<f64>> {
+    predicted_seen(model, data, window_starts, motion, |_| {})
 }
 
 /// The same, which shows what each window takes over from the one before; the first one that of
 /// its first samples.
 fn predicted_seen(
     model: &Model,
-    data: &FitData,
-    nodes: &[Node],
+    data: &FitProblem,
+    window_starts: &[WindowStart],
     motion: usize,
-    mut sees: impl FnMut(&Memory),
+    mut sees: impl FnMut(&PlantMemory),
 ) -> Vec<Vec<f64>> {
     data.halt().begin_run();
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
-    let mut memory = Memory::default();
+    let mut memory = PlantMemory::default();
     let windows = data.windows_of(motion);
     windows
         .map(|(index, window)| {
             let samples = window.samples.clone();
             let mut readings = vec![0.0; samples.len() * plant.signals()];
-            let start = nodes[index].start(&plant);
+            let start = window_starts[index].start(&plant);
             sees(&memory);
-            memory.begin_with(nodes[index].hidden(&plant));
+            memory.begin_with(window_starts[index].hidden(&plant));
             predict(&plant, log, samples, &start, &mut memory, &mut readings);
             readings
         })
@@ -112,18 +117,22 @@ fn predicted_seen(
 
 /// What is hidden where each window begins, in the order of [`Plant::hidden`], as the window before
 /// leaves it; where a motion begins, as it is a sample later.
-pub(super) fn left_hidden(model: &Model, data: &FitData, nodes: &[Node]) -> Vec<Vec<f64>> {
+pub(super) fn left_hidden(
+    model: &Model,
+    data: &FitProblem,
+    window_starts: &[WindowStart],
+) -> Vec<Vec<f64>> {
     let motions = (0..data.motions.len()).into_par_iter();
     let of_motion = |motion: usize| {
         let plant = Plant::new(model, &data.motions[motion]);
         let mut left = Vec::new();
-        predicted_seen(model, data, nodes, motion, |memory| {
+        predicted_seen(model, data, window_starts, motion, |memory| {
             left.push(memory.hidden(&plant))
         });
         if let (Some((index, window)), Some(first)) =
             (data.windows_of(motion).next(), left.first_mut())
         {
-            let (start, mut memory) = (nodes[index].start(&plant), Memory::default());
+            let (start, mut memory) = (window_starts[index].start(&plant), PlantMemory::default());
             let samples = window.samples.start..window.samples.end.min(window.samples.start + 2);
             let mut readings = vec![0.0; samples.len() * plant.signals()];
             predict(
@@ -145,11 +154,11 @@ pub(super) fn left_hidden(model: &Model, data: &FitData, nodes: &[Node]) -> Vec<
 /// Residuals of one motion's windows, in order.
 pub(super) fn motion_residuals(
     model: &Model,
-    data: &FitData,
-    nodes: &[Node],
+    data: &FitProblem,
+    window_starts: &[WindowStart],
     motion: usize,
 ) -> Vec<Vec<f64>> {
-    let mut windows = predicted(model, data, nodes, motion);
+    let mut windows = predicted(model, data, window_starts, motion);
     for (values, (_, window)) in windows.iter_mut().zip(data.windows_of(motion)) {
         for (signal, part) in values.chunks_mut(window.samples.len()).enumerate() {
             let measured = &data.measured(motion, signal)[window.samples.clone()];

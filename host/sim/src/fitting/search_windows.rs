@@ -1,6 +1,6 @@
 //! Windows in which values are looked for: short ones, over which no wrong value leads far astray.
 
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::Fit;
 use super::horizon::Horizon;
 use crate::motion::Motion;
@@ -13,7 +13,7 @@ const MOST_LOST: f64 = 0.5;
 /// Lengths of the windows to search on, the longest first: a second and less, none with fewer than
 /// forty samples or longer than wanted. Few samples are searched from many starts instead, over the
 /// horizon that counts.
-pub fn search_horizons(whole: &FitData, longest: Horizon, few: bool) -> Vec<Horizon> {
+pub fn search_horizons(whole: &FitProblem, longest: Horizon, few: bool) -> Vec<Horizon> {
     let samples: usize = whole.motions.iter().map(Motion::len).sum();
     let seconds: f64 = whole.motions.iter().map(Motion::duration_s).sum();
     if few {
@@ -29,7 +29,7 @@ pub fn search_horizons(whole: &FitData, longest: Horizon, few: bool) -> Vec<Hori
 /// Whether a fitted model still follows the windows of these data: what it leaves is less than half
 /// of how far the readings are from their mean in each window. Where it is not, a fit only damps
 /// the motion that it loses, and derivatives there say nothing of what is missing.
-pub fn is_followed(fit: &Fit, data: &FitData) -> bool {
+pub fn is_followed(fit: &Fit, data: &FitProblem) -> bool {
     let mut spread = 0.0;
     for window in &data.windows {
         for (signal, sigma) in data.sigma.iter().enumerate() {

@@ -1,12 +1,12 @@
 //! The calls that start a fit, or go on with one.
 
 use super::covariance::inverse;
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::levenberg_marquardt::LevenbergMarquardt;
-use super::node::{Node, StartGuess};
 use super::normal::NormalEquations;
 use super::residual::{Residuals, residuals};
+use super::window_start::{StartGuess, WindowStart};
 use crate::model::{Model, ParameterPath};
 use nalgebra::DVector;
 
@@ -16,7 +16,7 @@ const HOLDING: usize = 2;
 impl Fit {
     /// Goes on fitting to the same data; a fit that has converged only gets the derivatives it
     /// lacks.
-    pub fn resume(&self, data: &FitData, options: FitOptions) -> Fit {
+    pub fn resume(&self, data: &FitProblem, options: FitOptions) -> Fit {
         if self.converged && (self.fresh || options.rough) {
             return self.clone();
         }
@@ -34,13 +34,13 @@ impl Fit {
 
     /// The fit with one value held at a place, all others led there by the derivatives at hand;
     /// `None` where the value may not be there.
-    pub(super) fn holding(&self, value: usize, at: f64, data: &FitData) -> Option<Fit> {
+    pub(super) fn holding(&self, value: usize, at: f64, data: &FitProblem) -> Option<Fit> {
         let mut start = self.clone();
         let path = start.free.remove(value);
         let (low, high) = path.bounds(&self.model);
         let is_possible = (low..=high).contains(&at) && path.set(&mut start.model, at);
         is_possible.then_some(())?;
-        start.residuals = residuals(&start.model, data, &start.nodes);
+        start.residuals = residuals(&start.model, data, &start.window_starts);
         for (window, residual) in start.jacobian.iter_mut().zip(&start.residuals.windows) {
             window.parameters = window.parameters.clone().remove_column(value);
             window.residual.copy_from_slice(residual);
@@ -73,21 +73,22 @@ impl Fit {
         &self,
         model: &Model,
         added: &[ParameterPath],
-        data: &FitData,
+        data: &FitProblem,
         options: FitOptions,
     ) -> Fit {
         let [had, hidden] = [&self.model, model].map(|model| data.hidden(model));
         let hides_alike =
             had.len() == hidden.len() && had.iter().zip(&hidden).all(|(a, b)| a.is_alike(b));
-        let mut nodes = self.nodes.clone();
+        let mut window_starts = self.window_starts.clone();
         if !hides_alike {
-            (nodes.iter_mut()).for_each(|node| node.forget_hidden(data.joints()));
+            (window_starts.iter_mut())
+                .for_each(|window_start| window_start.forget_hidden(data.joints()));
         }
         let start = Fit {
             model: model.clone(),
             free: [&self.free, added].concat(),
-            residuals: residuals(model, data, &nodes),
-            nodes,
+            residuals: residuals(model, data, &window_starts),
+            window_starts,
             converged: false,
             simulations: 1,
             jacobian: Vec::new(),
@@ -108,20 +109,20 @@ impl Fit {
 pub fn fit(
     model: &Model,
     free: &[ParameterPath],
-    data: &FitData,
-    nodes: Option<&[Node]>,
+    data: &FitProblem,
+    window_starts: Option<&[WindowStart]>,
     options: FitOptions,
 ) -> Fit {
     let guesses = guesses(data);
-    let nodes = match nodes {
-        Some(nodes) => nodes.to_vec(),
-        None => guesses.iter().map(|g| g.node.clone()).collect(),
+    let window_starts = match window_starts {
+        Some(window_starts) => window_starts.to_vec(),
+        None => guesses.iter().map(|g| g.window_start.clone()).collect(),
     };
     let start = Fit {
         model: model.clone(),
         free: free.to_vec(),
-        residuals: residuals(model, data, &nodes),
-        nodes,
+        residuals: residuals(model, data, &window_starts),
+        window_starts,
         converged: false,
         simulations: 1,
         jacobian: Vec::new(),
@@ -131,22 +132,25 @@ pub fn fit(
 }
 
 /// Fits only the windows' start states: how the model, as it is, does on these motions.
-pub fn fit_start_states(model: &Model, data: &FitData) -> Fit {
+pub fn fit_start_states(model: &Model, data: &FitProblem) -> Fit {
     fit(model, &[], data, None, FitOptions::iterations(8))
 }
 
 /// The same after a single step from what the samples around each window's start suggest: nearly
 /// as good, in a fraction of the time.
-pub fn fit_start_states_roughly(model: &Model, data: &FitData) -> Fit {
+pub fn fit_start_states_roughly(model: &Model, data: &FitProblem) -> Fit {
     fit(model, &[], data, None, FitOptions::iterations(1))
 }
 
 /// The start states that the samples around each window's start suggest.
-pub fn guessed_nodes(data: &FitData) -> Vec<Node> {
-    guesses(data).into_iter().map(|guess| guess.node).collect()
+pub fn guessed_window_starts(data: &FitProblem) -> Vec<WindowStart> {
+    guesses(data)
+        .into_iter()
+        .map(|guess| guess.window_start)
+        .collect()
 }
 
-fn guesses(data: &FitData) -> Vec<StartGuess> {
+fn guesses(data: &FitProblem) -> Vec<StartGuess> {
     data.windows.iter().map(|w| data.guess(w)).collect()
 }
 
@@ -163,7 +167,7 @@ mod tests {
             swing(&truth, &[from_rad], even(600, 100.0))
         });
         let believed = pendulum(ANGLE, 0.003);
-        let data = FitData::new(&believed, motions.to_vec(), Horizon::Seconds(1.0));
+        let data = FitProblem::new(&believed, motions.to_vec(), Horizon::Seconds(1.0));
         let friction: ParameterPath = "coulomb@1.torque_nm".parse().unwrap();
         let base = fit(&believed, &[friction], &data, None, FitOptions::default());
         // A spring that is not there: nothing leads down but derivatives of its own.

@@ -4,12 +4,12 @@
 //! long one the values are known best. Each stage starts where the one before ended (Bock 1981,
 //! multiple shooting; homotopy in the length of the windows).
 
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::horizon::{Horizon, Window};
-use super::node::Node;
-use super::solve::{fit, guessed_nodes};
+use super::solve::{fit, guessed_window_starts};
 use super::ways::{End, Route};
+use super::window_start::WindowStart;
 use crate::model::{Model, ParameterPath};
 
 /// Seconds of one window, stage by stage, over which most valleys are true.
@@ -29,14 +29,14 @@ const STAGE: FitOptions = FitOptions {
 pub(super) struct Stages<'a> {
     model: Model,
     free: &'a [ParameterPath],
-    data: &'a FitData,
+    data: &'a FitProblem,
     /// The windows of the last stage and their start states.
-    before: Option<(Vec<Window>, Vec<Node>)>,
+    before: Option<(Vec<Window>, Vec<WindowStart>)>,
     simulations: usize,
 }
 
 impl<'a> Stages<'a> {
-    pub fn from(model: &Model, free: &'a [ParameterPath], data: &'a FitData) -> Self {
+    pub fn from(model: &Model, free: &'a [ParameterPath], data: &'a FitProblem) -> Self {
         Stages {
             model: model.clone(),
             free,
@@ -49,12 +49,12 @@ impl<'a> Stages<'a> {
     /// Goes on where `found` stands, a fit over other windows of the same motions.
     pub fn after(
         found: &Fit,
-        windows: &FitData,
+        windows: &FitProblem,
         free: &'a [ParameterPath],
-        data: &'a FitData,
+        data: &'a FitProblem,
     ) -> Self {
         Stages {
-            before: Some((windows.windows.clone(), found.nodes.clone())),
+            before: Some((windows.windows.clone(), found.window_starts.clone())),
             ..Stages::from(&found.model, free, data)
         }
     }
@@ -62,18 +62,18 @@ impl<'a> Stages<'a> {
     /// Fits over windows of these lengths, one after the other, that are shorter than those of the
     /// data; false where none is.
     pub fn through(&mut self, lengths_s: &[f64]) -> bool {
-        let longest = |data: &FitData| data.windows.iter().map(|w| w.samples.len()).max();
+        let longest = |data: &FitProblem| data.windows.iter().map(|w| w.samples.len()).max();
         let mut any = false;
         for &seconds in lengths_s {
             let stage = self.data.recut(Horizon::Seconds(seconds));
             if longest(&stage) >= longest(self.data) {
                 break;
             }
-            let nodes = carried(self.before.as_ref(), &stage);
-            let found = fit(&self.model, self.free, &stage, Some(&nodes), STAGE);
+            let window_starts = carried(self.before.as_ref(), &stage);
+            let found = fit(&self.model, self.free, &stage, Some(&window_starts), STAGE);
             self.model = found.model;
             self.simulations += found.simulations;
-            self.before = Some((stage.windows, found.nodes));
+            self.before = Some((stage.windows, found.window_starts));
             any = true;
         }
         any
@@ -81,11 +81,17 @@ impl<'a> Stages<'a> {
 
     /// The fit over the windows of the data from here.
     pub fn end(&mut self, options: FitOptions) -> Fit {
-        let nodes = match &self.before {
+        let window_starts = match &self.before {
             Some(_) => carried(self.before.as_ref(), self.data),
-            None => guessed_nodes(self.data),
+            None => guessed_window_starts(self.data),
         };
-        let mut found = fit(&self.model, self.free, self.data, Some(&nodes), options);
+        let mut found = fit(
+            &self.model,
+            self.free,
+            self.data,
+            Some(&window_starts),
+            options,
+        );
         found.simulations += std::mem::take(&mut self.simulations);
         found
     }
@@ -102,12 +108,15 @@ impl<'a> Stages<'a> {
 
 /// Start states of the windows of `data`: those of the windows before that start with the same
 /// sample, else as the samples suggest. Guesses alone may lead a long window into a false valley.
-fn carried(before: Option<&(Vec<Window>, Vec<Node>)>, data: &FitData) -> Vec<Node> {
+fn carried(
+    before: Option<&(Vec<Window>, Vec<WindowStart>)>,
+    data: &FitProblem,
+) -> Vec<WindowStart> {
     let known = |window: &Window| {
-        let (windows, nodes) = before?;
+        let (windows, window_starts) = before?;
         let start = |w: &Window| (w.motion, w.samples.start);
         let same = windows.iter().position(|w| start(w) == start(window))?;
-        Some(nodes[same].clone())
+        Some(window_starts[same].clone())
     };
     let windows = data.windows.iter();
     windows
@@ -119,7 +128,7 @@ fn carried(before: Option<&(Vec<Window>, Vec<Node>)>, data: &FitData) -> Vec<Nod
 pub fn fit_through_stages(
     model: &Model,
     free: &[ParameterPath],
-    data: &FitData,
+    data: &FitProblem,
     options: FitOptions,
 ) -> Fit {
     let mut stages = Stages::from(model, free, data);
@@ -200,7 +209,7 @@ input = { column = "u", unit = "N m" }
             .iter()
             .fold(0.0_f64, |most, q| most.max(q.abs()));
         assert!(farthest > 3.5, "{farthest}");
-        let data = FitData::new(&model, motions, Horizon::Seconds(4.0));
+        let data = FitProblem::new(&model, motions, Horizon::Seconds(4.0));
         let free: Vec<ParameterPath> = ["link1.inertia_kg_m2", "viscous@1.coefficient_nm_s_rad"]
             .map(|text| text.parse().unwrap())
             .to_vec();

@@ -2,11 +2,11 @@
 //! as fine as a found explanation needs to be judged by.
 
 use super::covariance::intervals;
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
-use super::node::Node;
 use super::residual::{Residuals, residuals};
 use super::solve::fit;
+use super::window_start::WindowStart;
 use crate::model::{Model, STEP_S};
 use crate::motion::Motion;
 
@@ -32,19 +32,19 @@ const HALVINGS: usize = 3;
 
 /// The model with the largest step, a whole fraction of the sampling period, whose predictions over
 /// these windows differ from those at the model's own step by next to nothing against the noise.
-pub fn coarsened(model: &Model, data: &FitData) -> Model {
-    let nodes: Vec<Node> = data
+pub fn coarsened(model: &Model, data: &FitProblem) -> Model {
+    let window_starts: Vec<WindowStart> = data
         .windows
         .iter()
         .map(|window| data.guessed(window))
         .collect();
-    let fine = residuals(model, data, &nodes);
+    let fine = residuals(model, data, &window_starts);
     let period_s = shortest_period_s(data);
     let steps = (1..=8).map(|parts| period_s / f64::from(parts));
     let steps = steps.take_while(|step_s| *step_s > 1.5 * model.step_s);
     for step_s in steps.filter(|step_s| *step_s < LONGEST_S) {
         let coarse = with_step(model, step_s);
-        if difference(&fine, &residuals(&coarse, data, &nodes)) < NEGLIGIBLE {
+        if difference(&fine, &residuals(&coarse, data, &window_starts)) < NEGLIGIBLE {
             return coarse;
         }
     }
@@ -58,10 +58,10 @@ pub fn coarsened(model: &Model, data: &FitData) -> Model {
 ///
 /// A law with corners needs shorter steps than the model it was added to: a dead zone, a limit, a
 /// grip that slips.
-pub(crate) fn in_fine_steps(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+pub(crate) fn in_fine_steps(found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
     halved_while(found, data, options, |found, fine| {
         let left = found.residuals.mean_square();
-        let halved = residuals(fine, data, &found.nodes);
+        let halved = residuals(fine, data, &found.window_starts);
         let changed = difference(&found.residuals, &halved).powi(2);
         let counts = changed >= SHARE * SHARE * left;
         counts.then(|| left - 0.5 * changed.min(left))
@@ -70,7 +70,7 @@ pub(crate) fn in_fine_steps(found: Fit, data: &FitData, options: FitOptions) -> 
 
 /// The fit, or one in steps so short that half of them would move none of its values by a share of
 /// the standard error that counts. The fit must have its derivatives.
-pub(crate) fn in_steps_for_values(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+pub(crate) fn in_steps_for_values(found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
     halved_while(found, data, options, |found, fine| {
         let most_left = (1.0 + HIGHER) * found.residuals.mean_square();
         moves_values(found, fine, data).then_some(most_left)
@@ -81,7 +81,7 @@ pub(crate) fn in_steps_for_values(found: Fit, data: &FitData, options: FitOption
 /// model in half the steps, has a mean square that the refit must not exceed, and it does not.
 fn halved_while(
     mut found: Fit,
-    data: &FitData,
+    data: &FitProblem,
     options: FitOptions,
     most_left: impl Fn(&Fit, &Model) -> Option<f64>,
 ) -> Fit {
@@ -95,7 +95,13 @@ fn halved_while(
         let Some(most_left) = most_left(&found, &fine) else {
             break;
         };
-        let refitted = fit(&fine, &found.free, data, Some(&found.nodes), options);
+        let refitted = fit(
+            &fine,
+            &found.free,
+            data,
+            Some(&found.window_starts),
+            options,
+        );
         if refitted.residuals.mean_square() > most_left {
             break;
         }
@@ -109,11 +115,11 @@ fn halved_while(
 
 /// Whether a fit of this other model, which differs in its steps, would have other values; as far
 /// as the derivatives tell.
-fn moves_values(found: &Fit, other: &Model, data: &FitData) -> bool {
+fn moves_values(found: &Fit, other: &Model, data: &FitProblem) -> bool {
     let Some((intervals, _)) = intervals(found, data) else {
         return false;
     };
-    let after = residuals(other, data, &found.nodes);
+    let after = residuals(other, data, &found.window_starts);
     let moved = found.moved_by(&after);
     let mut values = moved.iter().zip(&intervals);
     values.any(|(moved, interval)| moved.abs() > OF_ERROR * interval.standard_error)
@@ -133,7 +139,7 @@ fn difference(one: &Residuals, other: &Residuals) -> f64 {
 }
 
 /// Usual time between samples, s, of the motion with most of them a second.
-fn shortest_period_s(data: &FitData) -> f64 {
+fn shortest_period_s(data: &FitProblem) -> f64 {
     let periods = data.motions.iter().map(period_s);
     periods.fold(f64::INFINITY, f64::min)
 }

@@ -1,7 +1,7 @@
 //! What a fit's data tell of its values: their intervals, which values nothing shows, and which of
 //! those are held beside others of their effect.
 
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::fitted_value::{FittedValue, fitted_values};
 use super::jacobian::difference;
@@ -25,7 +25,7 @@ pub(super) struct ToldValues {
 ///
 /// # Errors
 /// The data do not determine the values.
-pub(super) fn told_values(found: Fit, data: &FitData) -> Result<ToldValues, Undetermined> {
+pub(super) fn told_values(found: Fit, data: &FitProblem) -> Result<ToldValues, Undetermined> {
     let (values, told) = fitted_values(&found, data);
     if told.is_some() {
         return Ok(ToldValues {
@@ -55,7 +55,7 @@ pub(super) fn told_values(found: Fit, data: &FitData) -> Result<ToldValues, Unde
 
 /// The blind parameters of effects of which another one tells: a dead zone whose commands begin at
 /// zero has a width below which nothing shows.
-fn blind_beside_others(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
+fn blind_beside_others(found: &Fit, data: &FitProblem) -> Vec<ParameterPath> {
     let mut blind = blind(found, data);
     let effect = |path: &ParameterPath| match path {
         ParameterPath::Effect { id, joint, .. } => Some((*id, *joint)),
@@ -71,12 +71,18 @@ fn blind_beside_others(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
 }
 
 /// The fit with some values held where they are.
-fn with_held(mut found: Fit, held: &[ParameterPath], data: &FitData) -> Fit {
+fn with_held(mut found: Fit, held: &[ParameterPath], data: &FitProblem) -> Fit {
     found.model.free.retain(|path| !held.contains(path));
     let mut free = found.free;
     free.retain(|path| !held.contains(path));
     let options = FitOptions::default();
-    fit(&found.model, &free, data, Some(&found.nodes), options)
+    fit(
+        &found.model,
+        &free,
+        data,
+        Some(&found.window_starts),
+        options,
+    )
 }
 
 fn said_of_held(path: &ParameterPath, model: &Model) -> String {
@@ -88,7 +94,7 @@ fn said_of_held(path: &ParameterPath, model: &Model) -> String {
 }
 
 /// Why a fit has no intervals: the parameters that change nothing in the data.
-fn undetermined_by(found: &Fit, data: &FitData) -> Undetermined {
+fn undetermined_by(found: &Fit, data: &FitProblem) -> Undetermined {
     let blind = blind(found, data);
     Undetermined {
         blind: blind.iter().map(ToString::to_string).collect(),
@@ -98,8 +104,8 @@ fn undetermined_by(found: &Fit, data: &FitData) -> Undetermined {
 
 /// The free parameters whose change, by the step of their derivative up or down, leaves every
 /// prediction as it was: of a law that jumps a smaller one moves no sample across.
-pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
-    let base = residuals(&found.model, data, &found.nodes);
+pub(super) fn blind(found: &Fit, data: &FitProblem) -> Vec<ParameterPath> {
+    let base = residuals(&found.model, data, &found.window_starts);
     let changes_nothing = |path: &&ParameterPath| {
         let value = path.get(&found.model).unwrap_or(0.0);
         let (low, high) = path.bounds(&found.model);
@@ -107,7 +113,7 @@ pub(super) fn blind(found: &Fit, data: &FitData) -> Vec<ParameterPath> {
         [value - step, value + step].iter().all(|other| {
             let mut moved = found.model.clone();
             let is_free = path.set(&mut moved, other.clamp(low, high));
-            is_free && residuals(&moved, data, &found.nodes) == base
+            is_free && residuals(&moved, data, &found.window_starts) == base
         })
     };
     found.free.iter().filter(changes_nothing).cloned().collect()

@@ -7,7 +7,7 @@
 //! values as they are and through windows that grow, until two of them end in the lowest valley.
 //! None ends above its start.
 
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::polish::{polish, settle};
 use super::solve::{fit, fit_start_states};
@@ -81,30 +81,30 @@ fn is_confirmed(ends: &[(Route, f64)]) -> bool {
 pub(super) fn ways<'a>(
     model: &'a Model,
     free: &'a [ParameterPath],
-    data: &'a FitData,
+    data: &'a FitProblem,
 ) -> impl Iterator<Item = End> + 'a {
     let direct = std::iter::once_with(|| (Route::Direct, directly(model, free, data)));
     direct.chain(Stages::from(model, free, data).ends())
 }
 
 /// The fit from the values as they are and the start states that suit them.
-pub(super) fn directly(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit {
+pub(super) fn directly(model: &Model, free: &[ParameterPath], data: &FitProblem) -> Fit {
     let start = fit_start_states(model, data);
     let options = FitOptions::default();
-    let mut found = fit(model, free, data, Some(&start.nodes), options);
+    let mut found = fit(model, free, data, Some(&start.window_starts), options);
     found.simulations += start.simulations;
     found
 }
 
 /// Fits the free parameters from the values of a model, which may be several times off; windows as
 /// in `data`. It leaves no more than the model does as it is, its start states fitted.
-pub fn best_fit(model: &Model, free: &[ParameterPath], data: &FitData) -> Fit {
+pub fn best_fit(model: &Model, free: &[ParameterPath], data: &FitProblem) -> Fit {
     lowest(ways(model, free, data)).unwrap_or_else(|| directly(model, free, data))
 }
 
 /// A fit that was found, or a lower one that windows that grow lead to from the values of `given`;
 /// as exactly as its values are stated.
-pub fn stated_from(found: Fit, given: &Model, data: &FitData) -> Fit {
+pub fn stated_from(found: Fit, given: &Model, data: &FitProblem) -> Fit {
     let free = found.free.clone();
     let others = Stages::from(given, &free, data).ends();
     let best = lowest(std::iter::once((Route::Direct, found.clone())).chain(others));
@@ -113,7 +113,7 @@ pub fn stated_from(found: Fit, given: &Model, data: &FitData) -> Fit {
 
 /// A fit as exactly as its values are stated: on no stair, in steps that are not too long. The fit
 /// must have its derivatives.
-pub fn stated(found: Fit, data: &FitData) -> Fit {
+pub fn stated(found: Fit, data: &FitProblem) -> Fit {
     settle(polish(found, data, FitOptions::default()), data)
 }
 

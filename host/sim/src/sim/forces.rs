@@ -7,12 +7,12 @@ use super::plant::Plant;
 use super::rows::Rows;
 use super::stepper::Contact;
 use crate::dynamics::{FreeBase, Workspace};
-use crate::effects::{BaseSpring, JointState, Slide};
+use crate::effects::{BaseSpring, FrictionState, JointState};
 use crate::model::Drive;
 
 /// A state: relative angles, rad, and speeds, rad/s, and how friction acts on each joint.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct At<'a> {
+pub(super) struct StateView<'a> {
     pub angle: &'a [f64],
     pub speed: &'a [f64],
     pub contact: &'a [Contact],
@@ -71,7 +71,7 @@ impl<R: Rows> Forces<R> {
         &mut self,
         plant: &Plant,
         inputs: &[DriveInput],
-        at: At<'_>,
+        at: StateView<'_>,
         out: &mut [f64],
     ) {
         self.find_torques(plant, inputs, at, out);
@@ -94,7 +94,7 @@ impl<R: Rows> Forces<R> {
         if !plant.torques_stay {
             return false;
         }
-        let at = At {
+        let at = StateView {
             angle: angle.as_ref(),
             speed: speed.as_ref(),
             contact,
@@ -113,7 +113,13 @@ impl<R: Rows> Forces<R> {
 
     /// Torques at the joints, and which of them are held. `out` is scratch.
     #[inline]
-    fn find_torques(&mut self, plant: &Plant, inputs: &[DriveInput], at: At<'_>, out: &mut [f64]) {
+    fn find_torques(
+        &mut self,
+        plant: &Plant,
+        inputs: &[DriveInput],
+        at: StateView<'_>,
+        out: &mut [f64],
+    ) {
         let n = self.torque.as_ref().len();
         for (joint, &input) in inputs[..n].iter().enumerate() {
             let plan = &plant.joints[joint];
@@ -177,7 +183,7 @@ impl<R: Rows> Forces<R> {
         [angle_rad, speed_rad_s]: [f64; 2],
         direction: f64,
     ) -> f64 {
-        let slide = Slide {
+        let slide = FrictionState {
             angle_rad: angle_rad - plant.zeros_rad[joint],
             speed_rad_s,
             direction,
@@ -195,7 +201,7 @@ impl<R: Rows> Forces<R> {
     }
 
     #[inline]
-    fn solve(&mut self, plant: &Plant, at: At<'_>, out: &mut [f64]) {
+    fn solve(&mut self, plant: &Plant, at: StateView<'_>, out: &mut [f64]) {
         let (angle, speed) = (at.angle, at.speed);
         if let Some((base, _)) = plant.base {
             return self.solve_on(base, plant, at, out);
@@ -216,7 +222,7 @@ impl<R: Rows> Forces<R> {
     }
 
     /// The same where the base gives way; says how it does.
-    fn solve_on(&mut self, base: BaseSpring, plant: &Plant, at: At<'_>, out: &mut [f64]) {
+    fn solve_on(&mut self, base: BaseSpring, plant: &Plant, at: StateView<'_>, out: &mut [f64]) {
         let [place, speed] = self.auxiliary.base();
         let free = FreeBase {
             mass_kg: base.mass_kg,
@@ -246,7 +252,7 @@ impl<R: Rows> Forces<R> {
         let mut cells = plant.joints.iter().filter_map(|plan| plan.gear_cell);
         if cells.any(|cell| self.memory.0[cell][0].is_nan()) {
             let contact = &[];
-            let at = At {
+            let at = StateView {
                 angle,
                 speed,
                 contact,
@@ -266,7 +272,7 @@ impl<R: Rows> Forces<R> {
 
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the
     /// outside torques with the other sign.
-    fn find_gear_loads(&mut self, plant: &Plant, at: At<'_>) {
+    fn find_gear_loads(&mut self, plant: &Plant, at: StateView<'_>) {
         plant.rig.chain.inverse(
             plant.rig.gravity_turn_rad,
             at.angle,
@@ -277,7 +283,7 @@ impl<R: Rows> Forces<R> {
     }
 
     /// Force in the bearings at the accelerations the chain has without friction.
-    fn find_bearing_loads(&mut self, plant: &Plant, at: At<'_>, out: &mut [f64]) {
+    fn find_bearing_loads(&mut self, plant: &Plant, at: StateView<'_>, out: &mut [f64]) {
         self.solve(plant, at, out);
         for (slope, contact) in out.iter_mut().zip(at.contact) {
             if *contact == Contact::Held {

@@ -7,7 +7,7 @@
 //! is wound up is taken over: its motor swings in, and knocks of its flanks leave a fit no slope.
 
 use super::joint_plan::{ActiveEffect, JointPlan};
-use super::memory::{EffectMemory, Memory};
+use super::memory::{EffectMemory, PlantMemory};
 use super::plant::Plant;
 use super::sensor_state::SensorState;
 use crate::effects::StepState;
@@ -19,7 +19,7 @@ pub struct HiddenUnknown {
     pub joint: usize,
     /// What of it is unknown.
     pub quantity: HiddenQuantity,
-    place: Place,
+    place: HiddenMemory,
 }
 
 /// What is unknown of something hidden.
@@ -40,7 +40,7 @@ pub enum HiddenQuantity {
 
 /// Where it is remembered, by the cell there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum HiddenMemory {
     Sensor(usize),
     Effect(usize),
     Input,
@@ -62,18 +62,18 @@ impl HiddenUnknown {
             let share = |scale| HiddenQuantity::Share { scale };
             for e in &plan.sense {
                 if let Some(scale) = e.effect.hidden_scale(e.values()) {
-                    add(Place::Sensor(sensors), share(scale));
-                    add(Place::Sensor(sensors), HiddenQuantity::Rate);
+                    add(HiddenMemory::Sensor(sensors), share(scale));
+                    add(HiddenMemory::Sensor(sensors), HiddenQuantity::Rate);
                 }
                 sensors += 1;
             }
             for (e, cell) in plan.remembering() {
                 if let Some(scale) = e.effect.hidden_scale(e.values()) {
-                    add(Place::Effect(cell), share(scale));
+                    add(HiddenMemory::Effect(cell), share(scale));
                 }
             }
             if plan.is_late {
-                add(Place::Input, HiddenQuantity::Before);
+                add(HiddenMemory::Input, HiddenQuantity::Before);
             }
         }
         all
@@ -111,7 +111,7 @@ impl Plant {
     pub(super) fn put_before(&self, values: &[f64], share: &mut [f64]) {
         share.fill(1.0);
         for (unknown, value) in self.hidden.iter().zip(values) {
-            if unknown.place == Place::Input {
+            if unknown.place == HiddenMemory::Input {
                 share[unknown.joint] = 1.0 + value;
             }
         }
@@ -127,7 +127,7 @@ impl Plant {
     }
 }
 
-impl Memory {
+impl PlantMemory {
     /// Has the next stretch begin with these values of what is hidden, in the order of
     /// [`Plant::hidden`]; with none, as remembered.
     pub fn begin_with(&mut self, hidden: &[f64]) {
@@ -139,14 +139,14 @@ impl Memory {
     pub fn hidden(&self, plant: &Plant) -> Vec<f64> {
         let value = |unknown: &HiddenUnknown| {
             let at = match unknown.place {
-                Place::Sensor(cell) => {
+                HiddenMemory::Sensor(cell) => {
                     let memory = self.sensors.cells.get(cell).copied().flatten();
                     memory
                         .zip(plant.sensor(cell))
                         .map(|(m, e)| e.effect.slipped(m))
                 }
-                Place::Effect(cell) => self.effects.0.get(cell).copied(),
-                Place::Input => None,
+                HiddenMemory::Effect(cell) => self.effects.0.get(cell).copied(),
+                HiddenMemory::Input => None,
             };
             at.map(|at| unknown.of(at))
                 .filter(|value| value.is_finite())
@@ -164,7 +164,7 @@ impl SensorState {
     pub(super) fn put_hidden(&mut self, plant: &Plant, values: &[f64]) {
         self.fit_to(plant);
         for (unknown, value) in plant.hidden.iter().zip(values) {
-            if let Place::Sensor(cell) = unknown.place
+            if let HiddenMemory::Sensor(cell) = unknown.place
                 && let Some(e) = plant.sensor(cell)
             {
                 let memory = self.cells[cell].unwrap_or_default();
@@ -181,7 +181,7 @@ impl EffectMemory {
     /// order of [`Plant::hidden`].
     pub(super) fn put_hidden(&mut self, plant: &Plant, angle: &[f64], values: &[f64]) {
         for (unknown, value) in plant.hidden.iter().zip(values) {
-            if let Place::Effect(cell) = unknown.place {
+            if let HiddenMemory::Effect(cell) = unknown.place {
                 let joint = unknown.joint;
                 let mut remembering = plant.joints[joint].remembering();
                 if let Some((e, _)) = remembering.find(|(_, own)| *own == cell) {

@@ -3,8 +3,8 @@
 
 use super::drive::DriveInput;
 use super::plant::Plant;
-use super::rows::Many;
-use super::run::Start;
+use super::rows::DynamicRows;
+use super::run::StartState;
 use super::sensor_state::SensorState;
 use super::stepper::{Stepper, steps};
 use crate::error::{Error, Result};
@@ -14,7 +14,7 @@ use crate::model::{Drive, Model};
 #[derive(Debug, Clone)]
 pub struct Live {
     plant: Plant,
-    stepper: Stepper<Many>,
+    stepper: Stepper<DynamicRows>,
     sensors: SensorState,
     inputs: Vec<DriveInput>,
     nominal_supply_v: Vec<Option<f64>>,
@@ -58,10 +58,10 @@ impl Live {
         let angles = plant.decode_rad(angle_rad);
         let supply = |joint: &crate::model::Joint| joint.drive.motor()?.nominal_supply_v;
         let mut sensors = SensorState::default();
-        let at_rest = Start {
+        let at_rest = StartState {
             speed_rad_s: vec![0.0; angles.len()],
             angle_rad: angles.clone(),
-            ..Start::default()
+            ..StartState::default()
         };
         sensors.begin(&plant, &at_rest);
         sensors.step(&plant, (&angles, &at_rest.speed_rad_s), 0.0);

@@ -5,18 +5,18 @@ use super::auxiliary::UNKNOWN;
 use super::drive::DriveInput;
 use super::joint_plan::JointPlan;
 use super::plant::Plant;
-use super::run::Start;
+use super::run::StartState;
 use super::sensor_state::SensorState;
 use crate::effects::{MemoryCell, StepState};
 
 /// Memory of a plant between the stretches of one motion.
 #[derive(Debug, Clone, Default)]
-pub struct Memory {
+pub struct PlantMemory {
     pub(super) sensors: SensorState,
     pub(super) effects: EffectMemory,
     /// Sample at which the stretch before ended, and in which state; none where nothing is
     /// remembered.
-    pub(super) ended: Option<(usize, Start)>,
+    pub(super) ended: Option<(usize, StartState)>,
     /// What is hidden where the next stretch begins, in the order of [`Plant::hidden`]; as
     /// remembered where empty.
     pub(super) begins: Vec<f64>,

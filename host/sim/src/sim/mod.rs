@@ -22,6 +22,6 @@ mod stepper;
 
 pub use hidden::{HiddenQuantity, HiddenUnknown};
 pub use live::{Live, bare_motors};
-pub use memory::Memory;
+pub use memory::PlantMemory;
 pub use plant::Plant;
-pub use run::{Start, predict};
+pub use run::{StartState, predict};

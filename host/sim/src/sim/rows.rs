@@ -46,9 +46,9 @@ pub(super) trait Rows {
 
 /// `N` joints.
 #[derive(Debug, Clone)]
-pub(super) struct Few<const N: usize>;
+pub(super) struct FixedRows<const N: usize>;
 
-impl<const N: usize> Rows for Few<N> {
+impl<const N: usize> Rows for FixedRows<N> {
     type Of<T: Copy + Debug> = [T; N];
     type Closed = Option<Dense<N>>;
 
@@ -96,9 +96,9 @@ impl<const N: usize> Rows for Few<N> {
 
 /// Any number of joints.
 #[derive(Debug, Clone)]
-pub(super) struct Many;
+pub(super) struct DynamicRows;
 
-impl Rows for Many {
+impl Rows for DynamicRows {
     type Of<T: Copy + Debug> = Vec<T>;
     type Closed = ();
 

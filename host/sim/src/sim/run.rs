@@ -4,9 +4,9 @@ mod time_offset;
 
 use super::drive::DriveInput;
 use super::input::{held_mean, share_before};
-use super::memory::Memory;
+use super::memory::PlantMemory;
 use super::plant::Plant;
-use super::rows::{Few, Many, Rows};
+use super::rows::{DynamicRows, FixedRows, Rows};
 use super::sensor_state::SensorState;
 use super::stepper::Stepper;
 use crate::model::Drive;
@@ -18,7 +18,7 @@ use std::ops::Range;
 /// state is of so much before that sample; see
 /// [`Effect::reading_offset_s`](crate::effects::Effect::reading_offset_s).
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Start {
+pub struct StartState {
     /// Per joint, rad.
     pub angle_rad: Vec<f64>,
     /// Per joint, rad/s.
@@ -47,15 +47,15 @@ pub fn predict(
     plant: &Plant,
     motion: &Motion,
     stretch: Range<usize>,
-    start: &Start,
-    memory: &mut Memory,
+    start: &StartState,
+    memory: &mut PlantMemory,
     readings: &mut [f64],
-) -> Start {
+) -> StartState {
     match plant.len() {
-        1 => predicted::<Few<1>>(plant, motion, stretch, start, memory, readings),
-        2 => predicted::<Few<2>>(plant, motion, stretch, start, memory, readings),
-        3 => predicted::<Few<3>>(plant, motion, stretch, start, memory, readings),
-        _ => predicted::<Many>(plant, motion, stretch, start, memory, readings),
+        1 => predicted::<FixedRows<1>>(plant, motion, stretch, start, memory, readings),
+        2 => predicted::<FixedRows<2>>(plant, motion, stretch, start, memory, readings),
+        3 => predicted::<FixedRows<3>>(plant, motion, stretch, start, memory, readings),
+        _ => predicted::<DynamicRows>(plant, motion, stretch, start, memory, readings),
     }
 }
 
@@ -63,10 +63,10 @@ fn predicted<R: Rows>(
     plant: &Plant,
     motion: &Motion,
     stretch: Range<usize>,
-    start: &Start,
-    memory: &mut Memory,
+    start: &StartState,
+    memory: &mut PlantMemory,
     readings: &mut [f64],
-) -> Start {
+) -> StartState {
     let samples = stretch.len();
     let hidden = std::mem::take(&mut memory.begins);
     cross_gap::<R>(plant, motion, stretch.start, memory);
@@ -98,12 +98,12 @@ fn predicted<R: Rows>(
 
 /// No stretch holds the time from its last sample to the first of the next: what is remembered
 /// there follows the plant on from where that stretch ended.
-fn cross_gap<R: Rows>(plant: &Plant, motion: &Motion, until: usize, memory: &mut Memory) {
+fn cross_gap<R: Rows>(plant: &Plant, motion: &Motion, until: usize, memory: &mut PlantMemory) {
     if plant.remembers == 0 && !plant.senses {
         return;
     }
     let Some((sample, state)) = memory.ended.clone().filter(|(sample, _)| *sample <= until) else {
-        *memory = Memory::default();
+        *memory = PlantMemory::default();
         return;
     };
     let mut run = Run::<R>::new(plant, motion, &state, std::mem::take(memory));
@@ -129,7 +129,7 @@ struct Run<'a, R: Rows> {
 }
 
 impl<'a, R: Rows> Run<'a, R> {
-    fn new(plant: &'a Plant, motion: &'a Motion, start: &Start, memory: Memory) -> Self {
+    fn new(plant: &'a Plant, motion: &'a Motion, start: &StartState, memory: PlantMemory) -> Self {
         let mut stepper = Stepper::<R>::new(plant, &start.angle_rad, &start.speed_rad_s);
         if memory.ended.is_some() {
             *stepper.memory() = memory.effects;
@@ -208,8 +208,8 @@ impl<'a, R: Rows> Run<'a, R> {
         !self.stepper.angle.as_ref().iter().all(|a| a.abs() < 1e6)
     }
 
-    fn state(&self) -> Start {
-        Start {
+    fn state(&self) -> StartState {
+        StartState {
             angle_rad: self.stepper.angle.as_ref().to_vec(),
             speed_rad_s: self.stepper.speed.as_ref().to_vec(),
             reading_slope: None,
@@ -217,8 +217,8 @@ impl<'a, R: Rows> Run<'a, R> {
     }
 
     /// What is remembered at sample `k`, where it ended in this state.
-    fn ended(mut self, k: usize, state: Start) -> Memory {
-        Memory {
+    fn ended(mut self, k: usize, state: StartState) -> PlantMemory {
+        PlantMemory {
             effects: std::mem::take(self.stepper.memory()),
             sensors: self.sensors,
             ended: Some((k, state)),

@@ -2,7 +2,7 @@
 
 use super::joint_plan::{ActiveEffect, JointPlan};
 use super::plant::Plant;
-use super::run::Start;
+use super::run::StartState;
 use crate::effects::{Encoded, SenseMemory};
 
 /// Readings of all sensors, and what sensor effects remember from one step to the next.
@@ -20,7 +20,7 @@ pub struct SensorState {
 impl SensorState {
     /// Prepares for a stretch that begins at `start`: sensors that trail begin as far behind as the
     /// speed of their readings says, for a stretch may begin at speed.
-    pub(super) fn begin(&mut self, plant: &Plant, start: &Start) {
+    pub(super) fn begin(&mut self, plant: &Plant, start: &StartState) {
         self.fit_to(plant);
         self.reading.resize(plant.signals(), 0.0);
         self.turned.resize(plant.signals(), 0.0);
@@ -61,7 +61,7 @@ impl SensorState {
     }
 
     /// A start state that was taken from readings, with what has slipped until then.
-    pub(super) fn beside_slips(&self, plant: &Plant, start: &Start) -> Start {
+    pub(super) fn beside_slips(&self, plant: &Plant, start: &StartState) -> StartState {
         let mut start = start.clone();
         let mut cells = self.cells.iter();
         let slipped = |plan: &JointPlan| {

@@ -7,7 +7,7 @@
 
 use super::auxiliary::Auxiliary;
 use super::drive::DriveInput;
-use super::forces::{At, Forces};
+use super::forces::{Forces, StateView};
 use super::memory::EffectMemory;
 use super::plant::Plant;
 use super::rows::Rows;
@@ -335,7 +335,7 @@ impl<R: Rows> Stepper<R> {
     fn find_excess(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         let (angle, speed) = (self.angle.as_ref(), self.speed.as_ref());
         let contact = self.contact.as_ref();
-        let at = At {
+        let at = StateView {
             angle,
             speed,
             contact,

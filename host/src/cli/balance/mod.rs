@@ -42,7 +42,7 @@ use super::deploy::board::BoardArgs;
 use super::flash::agreed;
 use super::interrupt::Interrupt;
 use super::port::{AnyLink, Ids, Port, id_list};
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use handstand::deploy::balance::{
     BalanceStatus, BalanceWatch, Balancer, Supervision, check_attitude,
 };
@@ -111,15 +111,15 @@ enum AttitudeKind {
 }
 
 /// Sets up, arms, supervises, lets down.
-pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &BalanceArgs, console: &Console) -> Result<ExitStatus> {
     let limits = checked(args)?;
     if args.dry_run {
-        return source::dry_run(args, talk);
+        return source::dry_run(args, console);
     }
     let given = args
         .plan
         .as_deref()
-        .map(|file| plan(args, file, talk))
+        .map(|file| plan(args, file, console))
         .transpose()?;
     let interrupt = Interrupt::listen();
     let (link, robot) = args.port.open_with_attitude()?;
@@ -135,7 +135,7 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
         fingerprint: plan.fingerprint(),
         ..BalanceReport::default()
     };
-    set_up(args, &plan, &mut balancer, &mut report, talk)?;
+    set_up(args, &plan, &mut balancer, &mut report, console)?;
     balancer.make_ready(&plan)?;
     agreed(
         args.yes,
@@ -144,7 +144,7 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
     let create = |file: &PathBuf| RobotRecorder::create(file, &args.ids.0, args.force);
     let mut recorder = args.record.as_ref().map(create).transpose()?;
     interrupt.at_once(balancer.emergency_off());
-    let live = talk.live();
+    let live = console.live();
     let how = Supervision {
         countdown_s: args.countdown,
         seconds: args.seconds,
@@ -164,7 +164,7 @@ pub fn run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
     }
     let outcome = outcome?
         .ok_or_else(|| Error::usage("Ctrl-C before torque came on", "nothing was moved"))?;
-    report.print(&outcome, &balancer.status, args.record.as_deref(), talk)
+    report.print(&outcome, &balancer.status, args.record.as_deref(), console)
 }
 
 /// The limits that torque comes on with.
@@ -204,11 +204,11 @@ fn set_up(
     plan: &Plan,
     balancer: &mut Balancer<AnyLink>,
     report: &mut BalanceReport,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<()> {
     let mut bytes = 0;
     plan.bytes(|_| bytes += 1);
-    let bar = talk.bar(bytes);
+    let bar = console.bar(bytes);
     report.uploaded = balancer.deploy(plan, |sent| bar.set_position(sent))?;
     drop(bar);
     let done = if report.uploaded {
@@ -216,10 +216,10 @@ fn set_up(
     } else {
         "on the CM-5"
     };
-    talk.say(&format!("plan {:08X}: {done}", report.fingerprint));
+    console.say(&format!("plan {:08X}: {done}", report.fingerprint));
     report.changes = balancer.wheel_changes(plan)?;
     if report.changes.is_empty() {
-        talk.say("servos: in wheel mode where driven, return delay 0");
+        console.say("servos: in wheel mode where driven, return delay 0");
         return Ok(());
     }
     let mut names: Vec<&str> = report.changes.iter().map(|c| c.register.name).collect();
@@ -228,7 +228,7 @@ fn set_up(
     for name in names {
         let of = report.changes.iter().filter(|c| c.register.name == name);
         let of: Vec<String> = of.map(|c| format!("{} ({})", c.id, c.before)).collect();
-        talk.say(&format!(
+        console.say(&format!(
             "{name} has to be 0, of servo (now): {}",
             of.join(", ")
         ));
@@ -238,7 +238,7 @@ fn set_up(
         "These registers are kept without power. Write them?",
     )?;
     balancer.set_up(&report.changes)?;
-    talk.say("servos: now in wheel mode where driven, return delay 0");
+    console.say("servos: now in wheel mode where driven, return delay 0");
     Ok(())
 }
 

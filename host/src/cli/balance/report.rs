@@ -1,7 +1,7 @@
 //! What a terminal shows while the robot is balanced, and the summary.
 
 use crate::cli::show::{or_dash, table};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::Result;
 use handstand::deploy::balance::{BalanceOutcome, BalanceStatus, WheelChange};
 use handstand::link::condition_words;
@@ -59,7 +59,7 @@ impl BalanceReport {
         outcome: &BalanceOutcome,
         status: &BalanceStatus,
         record: Option<&Path>,
-        talk: &Talk,
+        console: &Console,
     ) -> Result<ExitStatus> {
         let account = outcome.account.as_ref();
         let tripped = account.and_then(|account| account.tripped);
@@ -95,7 +95,7 @@ impl BalanceReport {
             outcome.balanced_s,
             outcome.words()
         );
-        talk.result(&data, || text)?;
+        console.result(&data, || text)?;
         if outcome.is_safety_stop() {
             Ok(ExitStatus::Stopped)
         } else {

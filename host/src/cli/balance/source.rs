@@ -2,7 +2,7 @@
 
 use super::{AttitudeKind, BalanceArgs};
 use crate::cli::deploy::{uses_table, verdict};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::deploy::balance::{AttitudeLines, AttitudeSource};
 use handstand::deploy::plan_of_file;
 use handstand::{Error, Model, Result};
@@ -14,7 +14,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// A file that cannot be read, or values that cannot be designed for.
-pub fn plan(args: &BalanceArgs, file: &Path, talk: &Talk) -> Result<Plan> {
+pub fn plan(args: &BalanceArgs, file: &Path, console: &Console) -> Result<Plan> {
     if file.extension().is_some_and(|ending| ending == "rs") {
         let text = std::fs::read_to_string(file);
         let text = text.map_err(|error| Error::file(file, "read", error))?;
@@ -22,7 +22,7 @@ pub fn plan(args: &BalanceArgs, file: &Path, talk: &Talk) -> Result<Plan> {
     }
     let model = Model::load(file)?;
     let basis = args.board.basis(&model)?;
-    talk.say(&uses_table(&basis.uses));
+    console.say(&uses_table(&basis.uses));
     basis.plan(&model)
 }
 
@@ -30,7 +30,7 @@ pub fn plan(args: &BalanceArgs, file: &Path, talk: &Talk) -> Result<Plan> {
 ///
 /// # Errors
 /// No model is given, or one that cannot be designed for.
-pub fn dry_run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn dry_run(args: &BalanceArgs, console: &Console) -> Result<ExitStatus> {
     let is_model = |file: &&Path| file.extension().is_none_or(|ending| ending != "rs");
     let Some(file) = args.plan.as_deref().filter(is_model) else {
         return Err(Error::usage(
@@ -41,13 +41,13 @@ pub fn dry_run(args: &BalanceArgs, talk: &Talk) -> Result<ExitStatus> {
     let model = Model::load(file)?;
     let basis = args.board.basis(&model)?;
     let plan = basis.plan(&model)?;
-    let verdict = verdict::of(&model, &plan, &basis, talk)?;
+    let verdict = verdict::of(&model, &plan, &basis, console)?;
     let data = json!({
         "fingerprint": format!("{:08X}", plan.fingerprint()),
         "effects": basis.uses,
         "verdict": verdict.as_ref(),
     });
-    talk.result(&data, || {
+    console.result(&data, || {
         let words = verdict::words(verdict.as_ref(), &plan);
         format!("{}\n{words}", uses_table(&basis.uses))
     })?;

@@ -7,7 +7,7 @@
 use super::changes::{self, RegisterChange};
 use super::scan::answering;
 use crate::cli::port::{Ids, Port, id_list};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::link::Settings;
 use handstand::{Error, Result, output};
 use handstand_shared::control_table::MODEL;
@@ -45,23 +45,23 @@ pub struct RestoreArgs {
 }
 
 /// Reads all, writes the file.
-pub fn backup(args: &BackupArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn backup(args: &BackupArgs, console: &Console) -> Result<ExitStatus> {
     output::vacant(&args.file, args.force)?;
     let mut servos = args.port.servos()?;
-    let ids = answering(&mut servos, &args.ids.0, talk)?;
+    let ids = answering(&mut servos, &args.ids.0, console)?;
     let read = ids.iter().map(|id| Settings::read(&mut servos, *id));
     let saved = read.collect::<Result<Vec<_>, _>>()?;
     output::write_new(&args.file, &Settings::to_toml(&saved), args.force)?;
     let file = args.file.display().to_string();
-    if talk.json {
-        talk.data(&json!({ "file": file, "ids": ids }))?;
+    if console.json {
+        console.data(&json!({ "file": file, "ids": ids }))?;
     }
-    talk.say(&format!("wrote {file}: {} servos", ids.len()));
+    console.say(&format!("wrote {file}: {} servos", ids.len()));
     Ok(ExitStatus::Done)
 }
 
 /// Compares, writes what differs, reads back.
-pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn restore(args: &RestoreArgs, console: &Console) -> Result<ExitStatus> {
     let mut saved = Settings::load(&args.file)?;
     if let Some(Ids(ids)) = &args.ids {
         let absent = |id: &&u8| saved.iter().all(|servo| servo.id != **id);
@@ -99,7 +99,7 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<ExitStatus> {
             code,
         }));
     }
-    let bar = talk.bar(changes.len() as u64);
+    let bar = console.bar(changes.len() as u64);
     for change in changes.iter().filter(|_| !args.dry_run) {
         servos.set_code(change.id, &change.register, change.code)?;
         bar.inc(1);
@@ -112,5 +112,5 @@ pub fn restore(args: &RestoreArgs, talk: &Talk) -> Result<ExitStatus> {
         "were written and read back"
     };
     let said = format!("{} registers {done}", changes.len());
-    changes::report(&data, &changes, "Saved", &said, talk)
+    changes::report(&data, &changes, "Saved", &said, console)
 }

@@ -1,7 +1,7 @@
 //! `bus doctor --bring-up`: the checklist of `docs/bring-up.md`, step by step, and a report.
 
 use crate::cli::port::AnyLink;
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::link::SerialLink as _;
 use handstand::link::bring_up::{Person, StepOutcome, StepResult, bring_up, markdown};
 use handstand::{Error, Result, output};
@@ -14,7 +14,7 @@ pub fn run(
     ids: &[u8],
     report: Option<&Path>,
     yes: bool,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<ExitStatus> {
     if let Some(file) = report {
         output::vacant(file, false)?;
@@ -23,11 +23,11 @@ pub fn run(
     let mut person = Attendant {
         can_be_asked: std::io::stdin().is_terminal(),
         yes,
-        talk,
+        console,
     };
     let results = bring_up(&mut link, ids, &mut person)?;
     if let Some(file) = report {
-        talk.write(file, &markdown(&port, &results), false)?;
+        console.write(file, &markdown(&port, &results), false)?;
     }
     let count = |outcome| results.iter().filter(|it| it.outcome == outcome).count();
     let [passed, deviate, failed, open] = [
@@ -37,7 +37,7 @@ pub fn run(
         StepOutcome::NotDone,
     ]
     .map(count);
-    talk.result(&results, || {
+    console.result(&results, || {
         format!("{passed} steps passed, {deviate} deviate, {failed} failed, {open} not done")
     })?;
     Ok(ExitStatus::answer(deviate + failed + open == 0))
@@ -48,7 +48,7 @@ struct Attendant<'a> {
     can_be_asked: bool,
     /// Torque is allowed beforehand.
     yes: bool,
-    talk: &'a Talk,
+    console: &'a Console,
 }
 
 impl Attendant<'_> {
@@ -66,7 +66,7 @@ impl Person for Attendant<'_> {
         if !self.can_be_asked {
             return Ok((None, "to be checked by hand".to_string()));
         }
-        self.talk.say(&format!("\n{title}\n  {instruction}"));
+        self.console.say(&format!("\n{title}\n  {instruction}"));
         let answer = self.answer("  yes or no, and what you measured (Enter: not done):")?;
         let is_so = match answer.split([' ', ',']).next() {
             Some("yes") => Some(true),
@@ -98,11 +98,11 @@ impl Person for Attendant<'_> {
         } else {
             format!(": {}", result.found)
         };
-        self.talk
+        self.console
             .say(&format!("{outcome:8} {}{found}", result.title));
         if let StepOutcome::Deviates | StepOutcome::Failed = result.outcome {
             let (expected, otherwise) = (result.expected, result.otherwise);
-            self.talk.say(&format!(
+            self.console.say(&format!(
                 "         expected: {expected}; otherwise: {otherwise}"
             ));
         }

@@ -1,6 +1,6 @@
 //! Registers that get another content, and showing them.
 
-use crate::cli::{ExitStatus, Talk, show::table_of};
+use crate::cli::{Console, ExitStatus, show::table_of};
 use handstand::Result;
 use handstand_shared::control_table::Item;
 use serde::{Serialize, Serializer};
@@ -34,10 +34,10 @@ pub fn report(
     changes: &[RegisterChange],
     after: &str,
     done: &str,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<ExitStatus> {
-    if talk.json {
-        talk.data(data)?;
+    if console.json {
+        console.data(data)?;
         return Ok(ExitStatus::Done);
     }
     let table = table_of(
@@ -50,8 +50,8 @@ pub fn report(
         ],
     );
     if !changes.is_empty() {
-        talk.print(&table.to_string())?;
+        console.print(&table.to_string())?;
     }
-    talk.say(done);
+    console.say(done);
     Ok(ExitStatus::Done)
 }

@@ -12,7 +12,7 @@
 
 use super::bring_up;
 use crate::cli::port::{AnyLink, DEFAULT_IDS, Ids, Port, id_list, say_found};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::Result;
 use handstand::link::doctor::{BusDiagnosis, examine};
 use std::path::PathBuf;
@@ -37,32 +37,36 @@ pub struct BusDoctorArgs {
 }
 
 /// Examines, shows.
-pub fn run(args: &BusDoctorArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &BusDoctorArgs, console: &Console) -> Result<ExitStatus> {
     let mut link = args.port.open()?;
     let given = args.ids.as_ref().map(|Ids(ids)| ids.clone());
     if args.bring_up {
         let report = args.report.as_deref();
         let ids = given.unwrap_or(DEFAULT_IDS.to_vec());
-        return bring_up::run(link, &ids, report, args.yes, talk);
+        return bring_up::run(link, &ids, report, args.yes, console);
     }
     let ids = match given {
         Some(ids) => ids,
-        None => with_a_sign_of_life(args, &mut link, talk)?,
+        None => with_a_sign_of_life(args, &mut link, console)?,
     };
-    let bar = talk.bar(0);
+    let bar = console.bar(0);
     let diagnosis = examine(link, &ids, args.port.protocol(), |step| {
         bar.set_message(step.to_string());
         bar.tick();
     })?;
     drop(bar);
-    talk.result(&diagnosis, || text(&diagnosis))?;
+    console.result(&diagnosis, || text(&diagnosis))?;
     Ok(ExitStatus::answer(diagnosis.causes.is_empty()))
 }
 
 /// Ids from which anything comes; all that were asked where nothing does.
-fn with_a_sign_of_life(args: &BusDoctorArgs, link: &mut AnyLink, talk: &Talk) -> Result<Vec<u8>> {
+fn with_a_sign_of_life(
+    args: &BusDoctorArgs,
+    link: &mut AnyLink,
+    console: &Console,
+) -> Result<Vec<u8>> {
     let found = args.port.on(link).answering(&DEFAULT_IDS)?;
-    say_found(&found, talk);
+    say_found(&found, console);
     let mut ids = [found.ids(), found.garbled].concat();
     ids.sort_unstable();
     Ok(if ids.is_empty() {

@@ -6,7 +6,7 @@
 
 use crate::cli::port::Port;
 use crate::cli::show::table_of;
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::Result;
 use handstand::link::{Session, cause_words, condition_words, fault_log};
 use handstand::output::table::TableColumn;
@@ -45,11 +45,11 @@ impl From<FaultEntry> for LoggedFault {
 }
 
 /// Asks, shows.
-pub fn run(args: &FaultLogArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &FaultLogArgs, console: &Console) -> Result<ExitStatus> {
     let mut session = Session::open(args.port.open()?)?;
     let entries = fault_log(&mut session)?;
     let faults: Vec<LoggedFault> = entries.into_iter().map(LoggedFault::from).collect();
-    talk.result(&faults, || text(&faults))?;
+    console.result(&faults, || text(&faults))?;
     Ok(ExitStatus::Done)
 }
 

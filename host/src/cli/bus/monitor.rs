@@ -3,7 +3,7 @@
 use super::scan::degrees;
 use crate::cli::port::{AnyLink, DEFAULT_IDS, Ids, Port, chosen, id_list};
 use crate::cli::show::{or_dash, table_of};
-use crate::cli::{ExitStatus, Talk, interrupt::Interrupt};
+use crate::cli::{Console, ExitStatus, interrupt::Interrupt};
 use handstand::Result;
 use handstand::link::record::ServoSample;
 use handstand::link::{Protocol, ServoError, ServoResult, Servos};
@@ -48,14 +48,14 @@ struct MonitorRound {
 }
 
 /// Reads and shows round by round. With `--json` all rounds at the end.
-pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &MonitorArgs, console: &Console) -> Result<ExitStatus> {
     let every = Duration::try_from_secs_f64(args.every).unwrap_or(Duration::from_secs(1));
     let interrupt = Interrupt::listen();
     let mut servos = args.port.servos()?;
     let ids = chosen(
         args.ids.as_ref(),
         || Ok(servos.answering(&DEFAULT_IDS)?),
-        talk,
+        console,
     )?;
     let mut rounds = Vec::new();
     for round in 0.. {
@@ -81,13 +81,13 @@ pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
                 }
             });
         }
-        if talk.json {
+        if console.json {
             rounds.push(MonitorRound {
                 time_s,
                 servos: seen,
             });
         } else {
-            talk.print(&format!("{time_s:.2} s\n{}", text(&seen)))?;
+            console.print(&format!("{time_s:.2} s\n{}", text(&seen)))?;
         }
         let next = Duration::from_secs_f64(time_s) + every;
         while servos.link().now() < next && !interrupt.has_come() {
@@ -95,8 +95,8 @@ pub fn run(args: &MonitorArgs, talk: &Talk) -> Result<ExitStatus> {
             servos.link().pause(left.min(Duration::from_millis(100)));
         }
     }
-    if talk.json {
-        talk.data(&rounds)?;
+    if console.json {
+        console.data(&rounds)?;
     }
     Ok(ExitStatus::Done)
 }

@@ -3,7 +3,7 @@
 //! turn count is forgotten.
 
 use crate::cli::port::{Ids, Port, id_list};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::link::{Protocol, ServoError};
 use handstand::{Error, Result};
 use serde_json::json;
@@ -19,7 +19,7 @@ pub struct RebootArgs {
 }
 
 /// Restarts one after the other, and reads what is left of their hardware errors.
-pub fn run(args: &RebootArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &RebootArgs, console: &Console) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
     let mut rebooted = Vec::new();
     let mut is_well = true;
@@ -33,7 +33,7 @@ pub fn run(args: &RebootArgs, talk: &Talk) -> Result<ExitStatus> {
         servos.reboot(*id)?;
         let errors = match servos.hardware_errors(*id) {
             Err(ServoError::UnknownModel { number, .. }) => {
-                talk.say(&format!(
+                console.say(&format!(
                     "servo {id} is back; where model {number} keeps its errors is not known"
                 ));
                 rebooted.push(json!({ "id": id, "error_flags": null }));
@@ -42,7 +42,7 @@ pub fn run(args: &RebootArgs, talk: &Talk) -> Result<ExitStatus> {
             errors => errors?,
         };
         is_well &= errors.is_empty();
-        talk.say(&if errors.is_empty() {
+        console.say(&if errors.is_empty() {
             format!("servo {id} is back")
         } else {
             format!(
@@ -52,8 +52,8 @@ pub fn run(args: &RebootArgs, talk: &Talk) -> Result<ExitStatus> {
         });
         rebooted.push(json!({ "id": id, "error_flags": errors }));
     }
-    if talk.json {
-        talk.data(&rebooted)?;
+    if console.json {
+        console.data(&rebooted)?;
     }
     Ok(ExitStatus::answer(is_well))
 }

@@ -1,7 +1,7 @@
 //! `bus read`, `bus write`: single registers.
 
 use crate::cli::port::{AnyLink, Port};
-use crate::cli::{ExitStatus, Talk, show::table_of};
+use crate::cli::{Console, ExitStatus, show::table_of};
 use handstand::link::{Model, OneMode, OneServo, ServoError, Servos};
 use handstand::model::suggest::suggest;
 use handstand::output::table::{TableColumn, or_empty};
@@ -67,7 +67,7 @@ fn row(items: &[Item], text: &str) -> Result<Item> {
 }
 
 /// Reads, shows.
-pub fn read(args: &ReadArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn read(args: &ReadArgs, console: &Console) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
     let items = servos.items(args.id)?;
     let named = args.registers.iter().map(|text| row(&items, text));
@@ -78,7 +78,7 @@ pub fn read(args: &ReadArgs, talk: &Talk) -> Result<ExitStatus> {
         let code = servos.code(args.id, item)?;
         contents.push(content(&mut servos, args.id, item, code)?);
     }
-    talk.result(&contents, || {
+    console.result(&contents, || {
         let columns: &[TableColumn<RegisterContent>] = &[
             ("Address", &|c| c.address.to_string()),
             ("Register", &|c| c.register.to_string()),
@@ -128,7 +128,7 @@ fn content(
 }
 
 /// Writes, reads back, shows.
-pub fn write(args: &WriteArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn write(args: &WriteArgs, console: &Console) -> Result<ExitStatus> {
     let (id, code) = (args.id, args.code);
     let mut servos = args.port.servos()?;
     let item = match servos.items(id) {
@@ -160,7 +160,7 @@ pub fn write(args: &WriteArgs, talk: &Talk) -> Result<ExitStatus> {
     servos.set_code(id, &item, code)?;
     let name = item.name;
     let data = json!({ "id": id, "register": name, "before": before, "code": code });
-    talk.result(&data, || {
+    console.result(&data, || {
         let before = before.map_or("?".to_string(), |code| code.to_string());
         format!("servo {id}: {name} {before} -> {code}")
     })?;

@@ -5,7 +5,7 @@
 
 use crate::cli::port::{AnyLink, Ids, Port, id_list};
 use crate::cli::show::{or_dash, table_of};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::link::record::no_response;
 use handstand::link::{Model, Protocol, ServoError, ServoResult, Servos, StatusError, id_ranges};
 use handstand::output::table::TableColumn;
@@ -42,12 +42,12 @@ pub struct FoundServo {
 }
 
 /// Asks, shows.
-pub fn run(args: &ScanArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &ScanArgs, console: &Console) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
-    let (found, _) = scan(&mut servos, &args.ids.0, talk)?;
-    talk.result(&found, || table(&found))?;
+    let (found, _) = scan(&mut servos, &args.ids.0, console)?;
+    console.result(&found, || table(&found))?;
     let asked = args.ids.0.len();
-    talk.say(&format!("{} of {asked} ids answer", found.len()));
+    console.say(&format!("{} of {asked} ids answer", found.len()));
     if found.is_empty() {
         Err(no_response())
     } else {
@@ -90,8 +90,8 @@ pub fn degrees(rad: f64) -> String {
 ///
 /// # Errors
 /// None answers; one does not tell what it is; or there are two of one id, as it seems.
-pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Result<Vec<u8>> {
-    let (found, garbled) = scan(servos, ids, talk)?;
+pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], console: &Console) -> Result<Vec<u8>> {
+    let (found, garbled) = scan(servos, ids, console)?;
     if !found.is_empty() && !garbled.is_empty() {
         return Err(Error::device(
             format!(
@@ -124,7 +124,7 @@ pub fn answering(servos: &mut Servos<AnyLink>, ids: &[u8], talk: &Talk) -> Resul
 pub fn scan(
     servos: &mut Servos<AnyLink>,
     ids: &[u8],
-    talk: &Talk,
+    console: &Console,
 ) -> Result<(Vec<FoundServo>, Vec<u8>)> {
     let asked = servos.protocol;
     let mut found = Vec::new();
@@ -134,7 +134,7 @@ pub fn scan(
         if asked.is_some_and(|asked| asked != protocol) {
             continue;
         }
-        let bar = talk.bar(ids.len() as u64);
+        let bar = console.bar(ids.len() as u64);
         // A silent id is asked once: most are.
         let answering = servos.answering_in(protocol, ids, 1, || bar.inc(1))?;
         for (id, error) in answering.sound {
@@ -152,11 +152,11 @@ pub fn scan(
     garbled.dedup();
     garbled.retain(|id| found.iter().all(|servo| servo.id != *id));
     if !garbled.is_empty() {
-        talk.say(&garbled_words(&garbled));
+        console.say(&garbled_words(&garbled));
     }
     for servo in &found {
         if let Some(fault) = &servo.fault {
-            talk.say(&format!("id {}: {fault}", servo.id));
+            console.say(&format!("id {}: {fault}", servo.id));
         }
     }
     Ok((found, garbled))

@@ -9,7 +9,7 @@
 use super::changes::{self, RegisterChange};
 use super::scan::answering;
 use crate::cli::port::{Ids, Port, id_list};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::link::doctor::read_test;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{ID, RETURN_DELAY, STATUS_LEVEL};
@@ -35,9 +35,9 @@ pub struct SetupArgs {
 }
 
 /// Scans, sets what differs, reads back.
-pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &SetupArgs, console: &Console) -> Result<ExitStatus> {
     let mut servos = args.port.servos()?;
-    let mut ids = answering(&mut servos, &args.ids.0, talk)?;
+    let mut ids = answering(&mut servos, &args.ids.0, console)?;
     let mut changes = Vec::new();
     if let Some(new) = args.new_id {
         let [only] = ids[..] else {
@@ -70,7 +70,7 @@ pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
         }
         ids = vec![new];
     }
-    let bar = talk.bar(ids.len() as u64);
+    let bar = console.bar(ids.len() as u64);
     for id in &ids {
         for (register, code) in [
             (RETURN_DELAY, args.return_delay),
@@ -93,5 +93,5 @@ pub fn run(args: &SetupArgs, talk: &Talk) -> Result<ExitStatus> {
     let (ready, changed) = (ids.len(), changes.len());
     let said = format!("{ready} servos are ready; {changed} registers were changed");
     let data = json!({ "ids": ids, "changes": changes });
-    changes::report(&data, &changes, "Now", &said, talk)
+    changes::report(&data, &changes, "Now", &said, console)
 }

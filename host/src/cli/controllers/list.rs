@@ -1,13 +1,13 @@
 //! The controllers and the conditions there are.
 
-use crate::cli::{ExitStatus, Talk, show};
+use crate::cli::{Console, ExitStatus, show};
 use handstand::Result;
 use handstand::study::CONDITIONS;
 use handstand::synth::controllers::{DESIGNS, Speeds};
 use serde_json::json;
 
 /// Lists them.
-pub fn run(talk: &Talk) -> Result<ExitStatus> {
+pub fn run(console: &Console) -> Result<ExitStatus> {
     let infos = DESIGNS.iter().map(|design| {
         let info = design.info();
         json!({
@@ -19,9 +19,9 @@ pub fn run(talk: &Talk) -> Result<ExitStatus> {
             "reference": info.reference,
         })
     });
-    talk.result(&infos.collect::<Vec<_>>(), text)?;
-    if !talk.json {
-        talk.say("`handstand controllers MODEL` tries them");
+    console.result(&infos.collect::<Vec<_>>(), text)?;
+    if !console.json {
+        console.say("`handstand controllers MODEL` tries them");
     }
     Ok(ExitStatus::Done)
 }

@@ -44,7 +44,7 @@ pub(super) mod verdict;
 
 use super::flash::{Loader, write};
 use super::port::Port;
-use super::{ExitStatus, Talk, gains};
+use super::{Console, ExitStatus, gains};
 use board::BoardArgs;
 use clap::ValueEnum as _;
 use handstand::deploy::{self, BoardLaw, ModeLimit, ObserverLoop, PlanBasis, plan_file};
@@ -125,10 +125,10 @@ enum Then {
 }
 
 /// Designs; deploys if told to.
-pub fn gains(args: &GainsCommand, talk: &Talk) -> Result<ExitStatus> {
+pub fn gains(args: &GainsCommand, console: &Console) -> Result<ExitStatus> {
     match (&args.then, &args.gains) {
-        (Some(Then::Deploy(args)), _) => run(args, talk),
-        (None, Some(args)) => gains::run(args, talk),
+        (Some(Then::Deploy(args)), _) => run(args, console),
+        (None, Some(args)) => gains::run(args, console),
         (None, None) => Err(Error::usage(
             "no model is given",
             "name a model file: handstand gains MODEL",
@@ -139,12 +139,13 @@ pub fn gains(args: &GainsCommand, talk: &Talk) -> Result<ExitStatus> {
 /// What was done so far.
 struct DeploySteps<'a> {
     done: Vec<String>,
-    talk: &'a Talk,
+    console: &'a Console,
 }
 
 impl DeploySteps<'_> {
     fn say(&mut self, step: String) {
-        self.talk.say(&format!("{}. {step}", self.done.len() + 1));
+        self.console
+            .say(&format!("{}. {step}", self.done.len() + 1));
         self.done.push(step);
     }
 }
@@ -163,7 +164,7 @@ struct Planned {
 }
 
 /// Designs; the files of a design are written.
-fn planned(args: &DeployArgs, talk: &Talk) -> Result<Planned> {
+fn planned(args: &DeployArgs, console: &Console) -> Result<Planned> {
     let model = Model::load(args.gains.model())?;
     let basis = args.board.basis(&model)?;
     let board = &basis.board;
@@ -191,7 +192,7 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Planned> {
         ));
     }
     let (reduced, request, made) =
-        gains::requested(&args.gains, talk).map_err(gains::of_options)?;
+        gains::requested(&args.gains, console).map_err(gains::of_options)?;
     let design = deploy::state_design(&reduced, request, board).map_err(gains::of_options)?;
     let plan = deploy::plan(&model, BoardLaw::State(&design), board)?;
     let radius = deploy::state_radius(&model, &design, &basis)?;
@@ -206,7 +207,7 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Planned> {
         ));
     }
     let data = handstand::synth::export::json(&design, &made);
-    gains::write(&args.gains, &design, &made, &data, talk)?;
+    gains::write(&args.gains, &design, &made, &data, console)?;
     Ok(Planned {
         model,
         basis,
@@ -218,12 +219,12 @@ fn planned(args: &DeployArgs, talk: &Talk) -> Result<Planned> {
 }
 
 /// Designs, brings over, reads back, replays.
-pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &DeployArgs, console: &Console) -> Result<ExitStatus> {
     let mut steps = DeploySteps {
         done: Vec::new(),
-        talk,
+        console,
     };
-    let made = planned(args, talk)?;
+    let made = planned(args, console)?;
     let plan = made.plan;
     let fingerprint = plan.fingerprint();
     let mut bytes = Vec::new();
@@ -232,9 +233,13 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         "designed: fingerprint {fingerprint:08X}, a plan of {} bytes",
         bytes.len()
     ));
-    let verdict = verdict::of(&made.model, &made.plan, &made.basis, talk)?;
+    let verdict = verdict::of(&made.model, &made.plan, &made.basis, console)?;
     if let Some(file) = &args.header {
-        write_new(file, &plan_file(&plan, &talk.command), args.gains.force())?;
+        write_new(
+            file,
+            &plan_file(&plan, &console.command),
+            args.gains.force(),
+        )?;
         steps.say(format!("wrote {}", file.display()));
     }
     let back = if args.flash {
@@ -266,7 +271,7 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         "lean_per_torque": made.observer.as_ref().map(|it| it.lean_per_torque.as_ref().map(rows)),
         "verdict": verdict.as_ref(),
     });
-    talk.result(&data, || {
+    console.result(&data, || {
         let mut parts = vec![uses_table(&made.basis.uses)];
         if !made.limits.is_empty() {
             parts.push(limits_table(&made.limits));
@@ -277,9 +282,9 @@ pub fn run(args: &DeployArgs, talk: &Talk) -> Result<ExitStatus> {
         parts.join("\n")
     })?;
     match way {
-        _ if talk.json => {}
-        None => talk.say("nothing was sent"),
-        Some(_) => talk.say("the CM-5 has these gains; torque is off"),
+        _ if console.json => {}
+        None => console.say("nothing was sent"),
+        Some(_) => console.say("the CM-5 has these gains; torque is off"),
     }
     Ok(if args.dry_run {
         ExitStatus::answer(verdict::holds(verdict.as_ref()))
@@ -296,7 +301,7 @@ fn replay(args: &DeployArgs, back: &[u8], steps: &mut DeploySteps) -> Result<()>
             "flash the firmware that belongs to this program",
         )
     })?;
-    let bar = steps.talk.bar(args.states);
+    let bar = steps.console.bar(args.states);
     let done = |done| bar.set_position(done);
     deploy::replay(&back.law, args.states, args.seed, done)?;
     drop(bar);
@@ -317,7 +322,7 @@ fn upload(
         return Ok(bytes.to_vec());
     }
     let mut session = Session::open(args.port.open()?)?;
-    let bar = steps.talk.bar(bytes.len() as u64);
+    let bar = steps.console.bar(bytes.len() as u64);
     deploy::upload(&mut session, bytes, |sent| bar.set_position(sent))?;
     drop(bar);
     steps.say("uploaded: the CM-5 keeps it in EEPROM".to_string());
@@ -328,7 +333,7 @@ fn flash(args: &DeployArgs, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) 
     let folder = tempfile::tempdir()
         .map_err(|error| Error::file(Path::new("temporary folder"), "make", error))?;
     let file = folder.path().join("plan.rs");
-    write_new(&file, &plan_file(plan, &steps.talk.command), false)?;
+    write_new(&file, &plan_file(plan, &steps.console.command), false)?;
     let bin = build::build(&args.firmware, &file)?;
     let image = Image::load(&bin)?;
     steps.say(format!(
@@ -339,7 +344,7 @@ fn flash(args: &DeployArgs, plan: &Plan, bytes: &[u8], steps: &mut DeploySteps) 
     if args.dry_run {
         return Ok(bytes.to_vec());
     }
-    write(&image, &args.port, &args.loader, true, steps.talk)?;
+    write(&image, &args.port, &args.loader, true, steps.console)?;
     steps.say("flashed: size and checksum are those of the file".to_string());
     // It starts within its first second.
     std::thread::sleep(std::time::Duration::from_secs(1));

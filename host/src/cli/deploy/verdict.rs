@@ -1,6 +1,6 @@
 //! Whether a plan holds the model's robot.
 
-use crate::cli::Talk;
+use crate::cli::Console;
 use handstand::deploy::PlanBasis;
 #[cfg(feature = "virtual-cm5")]
 use handstand::deploy::rehearsal::{Rehearsal, Setting};
@@ -21,7 +21,12 @@ const SEED: u64 = 1;
 /// # Errors
 /// A model that is no robot on these servos.
 #[cfg(feature = "virtual-cm5")]
-pub fn of(model: &Model, plan: &Plan, basis: &PlanBasis, talk: &Talk) -> Result<Option<Rehearsal>> {
+pub fn of(
+    model: &Model,
+    plan: &Plan,
+    basis: &PlanBasis,
+    console: &Console,
+) -> Result<Option<Rehearsal>> {
     let setting = Setting {
         lag_s: basis.timing.lag_s,
         supply_v: basis.supply_v,
@@ -29,7 +34,7 @@ pub fn of(model: &Model, plan: &Plan, basis: &PlanBasis, talk: &Talk) -> Result<
     };
     let rehearsal = Rehearsal::of(model, plan, &setting, SEED)?;
     if !rehearsal.holds {
-        talk.say(&rehearsal.words(plan));
+        console.say(&rehearsal.words(plan));
     }
     Ok(Some(rehearsal))
 }
@@ -39,8 +44,8 @@ pub fn of(model: &Model, plan: &Plan, basis: &PlanBasis, talk: &Talk) -> Result<
 /// # Errors
 /// Never.
 #[cfg(not(feature = "virtual-cm5"))]
-pub fn of(_: &Model, _: &Plan, _: &PlanBasis, talk: &Talk) -> Result<Option<Rehearsal>> {
-    talk.say("no verdict: this program was built without simulated servos");
+pub fn of(_: &Model, _: &Plan, _: &PlanBasis, console: &Console) -> Result<Option<Rehearsal>> {
+    console.say("no verdict: this program was built without simulated servos");
     Ok(None)
 }
 

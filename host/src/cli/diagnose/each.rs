@@ -9,7 +9,7 @@
 //! 1 when no log could be learned from.
 
 use super::{DiagnoseArgs, options};
-use crate::cli::{ExitStatus, Talk, input};
+use crate::cli::{Console, ExitStatus, input};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, LogOutcome, OutcomeFile, OutcomeKey, outcomes_in};
 use handstand::log::{LogRequest, unfolded};
@@ -36,7 +36,7 @@ pub struct EachArgs {
 }
 
 /// Diagnoses what is not done yet.
-pub fn run(folder: &Path, args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(folder: &Path, args: &DiagnoseArgs, console: &Console) -> Result<ExitStatus> {
     let model = input::model(&args.model)?;
     let text = input::text(&args.model)?;
     let file = ModelFile {
@@ -64,7 +64,7 @@ pub fn run(folder: &Path, args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus
     let count = own.count();
     if left.len() < count {
         let done = count - left.len();
-        talk.say(&format!("{done} of {count} logs are done already"));
+        console.say(&format!("{done} of {count} logs are done already"));
     }
     let work = Work {
         model: &model,
@@ -73,11 +73,11 @@ pub fn run(folder: &Path, args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus
         logs: &logs,
         keys: &keys,
     };
-    work.append(&left, &path, count, talk)?;
+    work.append(&left, &path, count, console)?;
     if shard != Shard::WHOLE {
         let shown = path.display().to_string();
         let data = json!({ "complete": true, "file": shown, "logs": count });
-        talk.result(&data, || {
+        console.result(&data, || {
             format!("{shown}: {count} logs, all of shard {shard}")
         })?;
         return Ok(ExitStatus::Done);
@@ -91,7 +91,7 @@ pub fn run(folder: &Path, args: &DiagnoseArgs, talk: &Talk) -> Result<ExitStatus
         &found.cloned().collect::<Vec<_>>(),
         into,
         args,
-        talk,
+        console,
     )
 }
 
@@ -106,12 +106,12 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Diagnoses the logs `left`, of `count` in all, and appends what they say.
-    fn append(&self, left: &[usize], path: &Path, count: usize, talk: &Talk) -> Result<()> {
+    fn append(&self, left: &[usize], path: &Path, count: usize, console: &Console) -> Result<()> {
         if left.is_empty() {
             return Ok(());
         }
         let mut outcomes = OutcomeFile::open(path)?;
-        let bar = talk.bar(count as u64);
+        let bar = console.bar(count as u64);
         for (done, &index) in left.iter().enumerate() {
             bar.set_position((count - left.len() + done) as u64);
             bar.set_message(self.logs[index].name());
@@ -129,7 +129,7 @@ fn finished(
     outcomes: &[LogOutcome],
     into: &Path,
     args: &DiagnoseArgs,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<ExitStatus> {
     for (name, text) in [
         ("logs.csv", outcomes_csv(outcomes)),
@@ -142,9 +142,9 @@ fn finished(
         write_new(&file, &text, args.page.is_forced())?;
     }
     let data = json!({ "complete": true, "outcomes": outcomes });
-    talk.result(&data, || outcomes_text(outcomes))?;
-    if !talk.json {
-        talk.say(&format!("{}: logs.csv, logs.html", into.display()));
+    console.result(&data, || outcomes_text(outcomes))?;
+    if !console.json {
+        console.say(&format!("{}: logs.csv, logs.html", into.display()));
     }
     Ok(ExitStatus::answer(
         outcomes.iter().any(LogOutcome::is_usable),

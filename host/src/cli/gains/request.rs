@@ -1,7 +1,7 @@
 //! What the options of `handstand gains` ask of a design.
 
 use super::super::weight_arg::WeightArg;
-use super::super::{Talk, page};
+use super::super::{Console, page};
 use super::GainsArgs;
 use handstand::fitting::effect_ids;
 use handstand::model::Model;
@@ -55,7 +55,7 @@ pub(super) fn pose(text: &str) -> Result<Pose, String> {
 /// The model without the effects left out, what is asked of its design, and where it came from.
 pub(in crate::cli) fn requested(
     args: &GainsArgs,
-    talk: &Talk,
+    console: &Console,
 ) -> Result<(Model, Request, Provenance)> {
     let files = [
         &args.rust,
@@ -69,13 +69,13 @@ pub(in crate::cli) fn requested(
     }
     let mut model = Model::load(&args.model)?;
     for id in leave_out(&mut model, &args.without)? {
-        talk.say(&format!("designed without {id}; the simulated loop has it"));
+        console.say(&format!("designed without {id}; the simulated loop has it"));
     }
     let (request, balance) = request(args, &model)?;
     if let Some(said) = balance {
-        talk.say(&said);
+        console.say(&said);
     }
-    Ok((model, request, provenance(&args.model, talk)?))
+    Ok((model, request, provenance(&args.model, console)?))
 }
 
 /// Takes these effects out of the model; which ones they were.
@@ -168,11 +168,11 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
     Ok((request, moved))
 }
 
-fn provenance(model: &Path, talk: &Talk) -> Result<Provenance> {
+fn provenance(model: &Path, console: &Console) -> Result<Provenance> {
     let file = page::hashed(model)?;
     Ok(Provenance {
         model: file.name,
         sha256: file.sha256,
-        command: talk.command.clone(),
+        command: console.command.clone(),
     })
 }

@@ -12,7 +12,7 @@
 //! `--json` prints `offset_s`, `alignment` (`first`, `second`, `correlation`), `rows`,
 //! `rows_of_both`, `columns`.
 
-use crate::cli::{ExitStatus, Talk, input};
+use crate::cli::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::log::{LogRequest, MergePlan, MergedLog, RawLog, merge};
 use handstand::output::number::{exact, percent};
@@ -52,7 +52,7 @@ fn pair(text: &str) -> Result<(String, String), String> {
 }
 
 /// Merges, writes, prints.
-pub fn run(args: &LogMergeArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &LogMergeArgs, console: &Console) -> Result<ExitStatus> {
     vacant(&args.output, args.force)?;
     let first = RawLog::read_request(&args.first)?;
     let second = RawLog::read_request(&args.second)?;
@@ -70,8 +70,8 @@ pub fn run(args: &LogMergeArgs, talk: &Talk) -> Result<ExitStatus> {
         "rows_of_both": merged.rows_of_both,
         "columns": merged.log.names,
     });
-    talk.result(&data, || said(&merged, rows))?;
-    talk.say(&format!("wrote {}", args.output.display()));
+    console.result(&data, || said(&merged, rows))?;
+    console.say(&format!("wrote {}", args.output.display()));
     Ok(ExitStatus::Done)
 }
 

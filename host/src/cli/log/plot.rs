@@ -5,7 +5,7 @@
 //! (`name`, `rows`, `gaps`, `low`, `high`) and `time`, the column taken for it. Exit code 0.
 
 use crate::cli::page::PageFile;
-use crate::cli::{ExitStatus, Talk, input};
+use crate::cli::{Console, ExitStatus, input};
 use handstand::log::{LogRequest, RawLog};
 use handstand::output::readable;
 use handstand::report::{raw_html, raw_text};
@@ -26,11 +26,11 @@ pub struct LogPlotArgs {
 }
 
 /// Draws.
-pub fn run(args: &LogPlotArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &LogPlotArgs, console: &Console) -> Result<ExitStatus> {
     args.page.vacant()?;
     let log = RawLog::read_request(&args.log)?;
     for (what, remedy) in log.remarks() {
-        talk.say(&format!("{}: {what} ({remedy})", args.log));
+        console.say(&format!("{}: {what} ({remedy})", args.log));
     }
     for column in &args.columns {
         if !log.names.contains(column) {
@@ -43,7 +43,7 @@ pub fn run(args: &LogPlotArgs, talk: &Talk) -> Result<ExitStatus> {
     let columns: Vec<Value> = log.names.iter().zip(&log.columns).map(column).collect();
     let data = json!({ "time": log.time().map(|time| &log.names[time]), "columns": columns });
     // Who asks for a page does not want it in dots too.
-    talk.result(&data, || {
+    console.result(&data, || {
         if args.page.is_wanted() {
             format!("{}: {} columns", args.log, log.names.len())
         } else {
@@ -52,7 +52,7 @@ pub fn run(args: &LogPlotArgs, talk: &Talk) -> Result<ExitStatus> {
     })?;
     let title = args.log.name();
     args.page
-        .write(|| Ok(raw_html(&title, &log, &args.columns)), talk)?;
+        .write(|| Ok(raw_html(&title, &log, &args.columns)), console)?;
     Ok(ExitStatus::Done)
 }
 

@@ -7,7 +7,7 @@
 //! `--json` prints `complete`, and `summary` or `missing` (`first_run`, `last_run`) with `torn`
 //! (`file`, `bytes`).
 
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::Result;
 use handstand::study::{Missing, merge};
 use serde_json::{Value, json};
@@ -28,16 +28,21 @@ pub struct MergeArgs {
 }
 
 /// Merges, or says what is missing.
-pub fn run(args: &MergeArgs, talk: &Talk) -> Result<ExitStatus> {
-    merged(&args.journals, &args.output, args.force, talk)
+pub fn run(args: &MergeArgs, console: &Console) -> Result<ExitStatus> {
+    merged(&args.journals, &args.output, args.force, console)
 }
 
 /// Merges journals into a folder and prints the summary, or says what is missing.
-pub fn merged(journals: &[PathBuf], into: &Path, force: bool, talk: &Talk) -> Result<ExitStatus> {
+pub fn merged(
+    journals: &[PathBuf],
+    into: &Path,
+    force: bool,
+    console: &Console,
+) -> Result<ExitStatus> {
     let merged = merge(journals)?;
     match &merged {
-        Ok(merged) => super::write::finished(merged, into, force, talk)?,
-        Err(missing) => talk.result(&data(missing), || text(missing))?,
+        Ok(merged) => super::write::finished(merged, into, force, console)?,
+        Err(missing) => console.result(&data(missing), || text(missing))?,
     }
     Ok(ExitStatus::answer(merged.is_ok()))
 }

@@ -16,7 +16,7 @@ mod monte_carlo;
 mod sweep;
 mod write;
 
-use super::{ExitStatus, Talk};
+use super::{Console, ExitStatus};
 use clap::Subcommand;
 use handstand::Result;
 
@@ -32,10 +32,10 @@ pub enum StudyCommand {
 }
 
 /// Does it.
-pub fn run(command: &StudyCommand, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(command: &StudyCommand, console: &Console) -> Result<ExitStatus> {
     match command {
-        StudyCommand::Sweep(args) => sweep::run(args, talk),
-        StudyCommand::MonteCarlo(args) => monte_carlo::run(args, talk),
-        StudyCommand::Merge(args) => merge::run(args, talk),
+        StudyCommand::Sweep(args) => sweep::run(args, console),
+        StudyCommand::MonteCarlo(args) => monte_carlo::run(args, console),
+        StudyCommand::Merge(args) => merge::run(args, console),
     }
 }

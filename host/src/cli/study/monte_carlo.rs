@@ -9,7 +9,7 @@
 //! `--json` prints `complete` with the `summary`; for a shard `complete`, `journal`, `chunks`.
 
 use crate::cli::gains_choice::GainsChoice;
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::Result;
 use handstand::study::{CHUNK, Header, Journal, Shard, Study, fill};
 use serde_json::json;
@@ -40,7 +40,7 @@ pub struct MonteCarloArgs {
 }
 
 /// Runs what is not done yet.
-pub fn run(args: &MonteCarloArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &MonteCarloArgs, console: &Console) -> Result<ExitStatus> {
     let mut study = Study::load(&args.study)?;
     if let Some(runs) = args.runs {
         study.judging.runs = usize::try_from(runs).unwrap_or(usize::MAX);
@@ -59,18 +59,18 @@ pub fn run(args: &MonteCarloArgs, talk: &Talk) -> Result<ExitStatus> {
     let mut journal = Journal::open(&path, &header)?;
     if journal.torn_bytes > 0 {
         let torn = journal.torn_bytes;
-        talk.say(&format!("{shown}: cut off {torn} bytes of a torn chunk"));
+        console.say(&format!("{shown}: cut off {torn} bytes of a torn chunk"));
     }
     let own = (0..header.chunks()).filter(|&chunk| shard.holds(chunk));
     let (done, left): (Vec<usize>, Vec<usize>) = own.partition(|own| journal.done.contains(own));
     let chunks = done.len() + left.len();
     if !done.is_empty() {
-        talk.say(&format!(
+        console.say(&format!(
             "{} of {chunks} chunks are done already",
             done.len()
         ));
     }
-    let bar = talk.bar(chunks as u64);
+    let bar = console.bar(chunks as u64);
     bar.set_position(done.len() as u64);
     bar.set_message(format!("chunks of {CHUNK} runs"));
     fill(&mut journal, &study, &designed, &left, || bar.inc(1))?;
@@ -78,11 +78,11 @@ pub fn run(args: &MonteCarloArgs, talk: &Talk) -> Result<ExitStatus> {
     if shard == Shard::WHOLE {
         // Its lock goes with it; the merge reads the file.
         drop(journal);
-        return super::merge::merged(&[path], &args.output, args.force, talk);
+        return super::merge::merged(&[path], &args.output, args.force, console);
     }
     let journal = path.display().to_string();
     let data = json!({ "complete": true, "journal": journal, "chunks": chunks });
-    talk.result(&data, || {
+    console.result(&data, || {
         format!("{journal}: {chunks} chunks, all of shard {shard}")
     })?;
     Ok(ExitStatus::Done)

@@ -10,7 +10,7 @@
 
 use crate::cli::gains_choice::GainsChoice;
 use crate::cli::show::{self, or_dash, table, table_of};
-use crate::cli::{ExitStatus, Talk};
+use crate::cli::{Console, ExitStatus};
 use handstand::output::number::exact;
 use handstand::output::table::{TableColumn, csv_of, or_empty};
 use handstand::report::sweep_svg;
@@ -75,9 +75,9 @@ fn controller(id: &str) -> Result<&'static str, String> {
 }
 
 /// Sweeps, prints, writes.
-pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
+pub fn run(args: &SweepArgs, console: &Console) -> Result<ExitStatus> {
     if args.names.is_empty() {
-        return list(talk);
+        return list(console);
     }
     let chosen: Vec<Swept> = if args.names.iter().any(|name| name == "all") {
         sweeps().collect()
@@ -118,15 +118,15 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
             args.levels.clone()
         }
     };
-    let bar = talk.bar(chosen.iter().map(|(_, own)| levels(own).len() as u64).sum());
+    let bar = console.bar(chosen.iter().map(|(_, own)| levels(own).len() as u64).sum());
     let mut all = Vec::new();
     for one in chosen {
         bar.set_message(one.0.title);
         let ran = sweep(one, &levels(one.1), &study.case, &study.judging, || {
             bar.inc(1)
         })?;
-        if !talk.json {
-            bar.suspend(|| talk.print(&shown(one, &ran)))?;
+        if !console.json {
+            bar.suspend(|| console.print(&shown(one, &ran)))?;
         }
         if let Some(folder) = &args.output {
             let file = |ending: &str| folder.join(format!("{}.{ending}", one.0.id));
@@ -137,8 +137,8 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
         all.push(ran);
     }
     drop(bar);
-    if talk.json {
-        talk.data(&all)?;
+    if console.json {
+        console.data(&all)?;
     }
     if let Some((ran, why)) = all.iter().find_map(|ran| Some((ran, ran.refused()?))) {
         return Err(Error::design(
@@ -149,7 +149,7 @@ pub fn run(args: &SweepArgs, talk: &Talk) -> Result<ExitStatus> {
     Ok(ExitStatus::Done)
 }
 
-fn list(talk: &Talk) -> Result<ExitStatus> {
+fn list(console: &Console) -> Result<ExitStatus> {
     let data = sweeps().map(|(quantity, levels)| {
         json!({
             "id": quantity.id,
@@ -158,7 +158,7 @@ fn list(talk: &Talk) -> Result<ExitStatus> {
             "levels": levels.values,
         })
     });
-    talk.result(&data.collect::<Vec<_>>(), || {
+    console.result(&data.collect::<Vec<_>>(), || {
         let mut table = table(["Sweep", "Unit", "What is varied"]);
         let rows = sweeps().map(|(quantity, levels)| [quantity.id, levels.unit, quantity.meaning]);
         table.add_rows(rows);

@@ -1,6 +1,6 @@
 //! A finished Monte Carlo study, printed and written.
 
-use crate::cli::{Talk, show::table_of};
+use crate::cli::{Console, show::table_of};
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use handstand::report::monte_carlo_svg;
@@ -16,7 +16,7 @@ pub fn folder(folder: &Path) -> Result<()> {
 
 /// Writes `runs.csv`, `summary.json`, `stabilised.svg`, prints the summary. What is there already
 /// with the same content stays.
-pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Result<()> {
+pub fn finished(merged: &Merged, into: &Path, force: bool, console: &Console) -> Result<()> {
     let file = into.join("runs.csv");
     let summary = merged.summary(&file)?;
     let json = serde_json::to_string_pretty(&summary)
@@ -34,10 +34,10 @@ pub fn finished(merged: &Merged, into: &Path, force: bool, talk: &Talk) -> Resul
         output::write_new(&file, &text, force)?;
     }
     let data = json!({ "complete": true, "summary": summary });
-    talk.result(&data, || shown(&summary))?;
-    if !talk.json {
+    console.result(&data, || shown(&summary))?;
+    if !console.json {
         let into = into.display();
-        talk.say(&format!("{into}: runs.csv, summary.json, stabilised.svg"));
+        console.say(&format!("{into}: runs.csv, summary.json, stabilised.svg"));
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ use crate::sim::closed_loop::{
 };
 use crate::synth::{StateFeedbackPlan, continuous_period_s, linearise, poles};
 use nalgebra::DMatrix;
-use series::{Both, DeviationSeries, pooled};
+use series::{DeviationSeries, MotionSeries, pooled};
 
 /// Simulates the loop of `model`, with all its effects, and the plan's law from the first sample of
 /// each motion, and compares angles at the samples.
@@ -83,7 +83,7 @@ fn one_motion(
     plan: &StateFeedbackPlan,
     motion: &Motion,
     index: u64,
-) -> Option<Both> {
+) -> Option<MotionSeries> {
     let angles = &motion.position_rad;
     let first = (0..motion.len()).find(|&k| angles.iter().all(|joint| joint[k].is_finite()))?;
     let time_s: Vec<f64> = motion.time_s[first..]
@@ -94,7 +94,7 @@ fn one_motion(
     let measured = measured(closed, motion, first, &time_s);
     let start = initial_state(closed, plan, motion, first);
     let simulated = simulated(closed, plan, &start, &time_s, index);
-    let mut both = Both {
+    let mut both = MotionSeries {
         motion: LoopMotion {
             motion: motion.name.clone(),
             duration_s,

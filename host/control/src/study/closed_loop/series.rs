@@ -10,7 +10,7 @@ pub(super) struct DeviationSeries {
 }
 
 /// A motion with the series behind its figures.
-pub(super) struct Both {
+pub(super) struct MotionSeries {
     pub time_s: Vec<f64>,
     pub measured: DeviationSeries,
     pub simulated: DeviationSeries,
@@ -36,8 +36,8 @@ impl DeviationSeries {
 }
 
 /// One joint's figures over motions.
-pub(super) fn pooled(all: &[Both], joint: usize) -> LoopSignal {
-    let of = |series: fn(&Both) -> &DeviationSeries| {
+pub(super) fn pooled(all: &[MotionSeries], joint: usize) -> LoopSignal {
+    let of = |series: fn(&MotionSeries) -> &DeviationSeries| {
         let angles = all.iter().flat_map(|both| &series(both).angle_rad[joint]);
         let cycles = all
             .iter()

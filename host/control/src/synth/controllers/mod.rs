@@ -37,7 +37,7 @@ pub use observed::ObservedDesign;
 pub use on_board::{OnBoard, board_plant};
 pub use reason::ControllerReason;
 pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
-pub use servo::{ServoLag, Through};
+pub use servo::{ServoLag, ThroughServos};
 
 /// Every controller, plainest first.
 pub const DESIGNS: &[&dyn ControllerDesign] = &[

@@ -35,7 +35,7 @@ impl ServoLag {
 
 /// A controller whose commands reach the robot through such servos.
 #[derive(Debug)]
-pub struct Through<'a> {
+pub struct ThroughServos<'a> {
     /// The controller.
     pub inner: Box<dyn Controller + 'a>,
     /// Its servos.
@@ -46,7 +46,7 @@ pub struct Through<'a> {
     pub limit_nm: f64,
 }
 
-impl Controller for Through<'_> {
+impl Controller for ThroughServos<'_> {
     fn memory_len(&self) -> usize {
         self.inner.memory_len() + 2 * self.drives
     }

@@ -10,7 +10,7 @@ use crate::synth::system::Discrete;
 
 /// A law in fixed point.
 #[derive(Debug, Clone)]
-pub struct Fixed {
+pub struct FixedDesign {
     /// What it covers.
     pub ranges: Ranges,
     /// The table.
@@ -28,7 +28,7 @@ impl Design {
         request: &Request,
         plant: &Discrete,
         mut ranges: Ranges,
-    ) -> Result<Fixed, DesignError> {
+    ) -> Result<FixedDesign, DesignError> {
         let Ranges { state, input } = &mut ranges;
         let mut format = request.format.clone();
         let mut sums = None;
@@ -62,7 +62,7 @@ impl Design {
                 radius: loss.radius_fixed,
             });
         }
-        Ok(Fixed {
+        Ok(FixedDesign {
             ranges,
             law,
             sums,

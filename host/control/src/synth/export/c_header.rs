@@ -4,7 +4,7 @@ use super::Provenance;
 use super::c_text::{C_LAW, C_SUMS, C_TABLE, C_TEST};
 use super::golden::golden;
 use super::values::{head, list};
-use crate::synth::{Design, Fixed, FixedLaw, Signal, rows};
+use crate::synth::{Design, FixedDesign, FixedLaw, Signal, rows};
 use std::fmt::{Display, Write as _};
 
 /// The name that macros, tables and functions begin with where no other is given.
@@ -22,7 +22,7 @@ pub fn is_c_name(name: &str) -> bool {
 /// The header: C99 and later, C++11 and later; clean under gcc's and clang's -Wconversion. Every
 /// name begins with `name`, so that one file can include several. Right shifts of negative values
 /// must be arithmetic, as they are with gcc and clang; the header refuses other compilers.
-pub fn c_header(design: &Design, fixed: &Fixed, made: &Provenance, name: &str) -> String {
+pub fn c_header(design: &Design, fixed: &FixedDesign, made: &Provenance, name: &str) -> String {
     let law = &fixed.law;
     let mut text = String::from("/*\n");
     for line in head(design, fixed, made) {
@@ -143,7 +143,7 @@ typedef char %_assert_int32[sizeof(int32_t) == 4 ? 1 : -1];
 }
 
 /// Sums of angles are states that the caller keeps.
-fn sums(fixed: &Fixed) -> String {
+fn sums(fixed: &FixedDesign) -> String {
     fixed.sums.as_ref().map_or_else(String::new, |sums| {
         C_SUMS
             .replace("<count>", &sums.joints.len().to_string())

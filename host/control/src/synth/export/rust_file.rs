@@ -3,12 +3,12 @@
 use super::Provenance;
 use super::golden::golden;
 use super::values::{head, list};
-use crate::synth::{Design, Fixed};
+use crate::synth::{Design, FixedDesign};
 use std::fmt::Write as _;
 
 /// `gains.rs`: table, fingerprint, golden vectors, the law itself, and `check`, which runs the
 /// vectors.
-pub fn rust_file(design: &Design, fixed: &Fixed, made: &Provenance) -> String {
+pub fn rust_file(design: &Design, fixed: &FixedDesign, made: &Provenance) -> String {
     let law = &fixed.law;
     let (m, n) = law.k.shape();
     let mut text = String::new();

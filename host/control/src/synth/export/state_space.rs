@@ -2,7 +2,7 @@
 
 use super::Provenance;
 use super::values::names;
-use crate::synth::{Design, Discrete, Estimation, Fixed, OmittedEffect, Signal, rows};
+use crate::synth::{Design, Discrete, Estimation, FixedDesign, OmittedEffect, Signal, rows};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -101,7 +101,7 @@ fn estimator(estimation: &Estimation) -> Value {
     })
 }
 
-fn fixed(fixed: &Fixed) -> Value {
+fn fixed(fixed: &FixedDesign) -> Value {
     let (law, loss) = (&fixed.law, &fixed.loss);
     json!({
         "bits": law.bits,

@@ -4,7 +4,7 @@ use super::format::{digits, plain, several};
 use super::values::{list, names};
 use crate::output::number::short;
 use crate::synth::eigen::largest;
-use crate::synth::{Controllability, Design, Estimation, Fixed, Mode, OmittedEffect, Signal};
+use crate::synth::{Controllability, Design, Estimation, FixedDesign, Mode, OmittedEffect, Signal};
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 use nalgebra::DMatrix;
 
@@ -260,7 +260,7 @@ fn stationary_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
     lines
 }
 
-fn fixed_lines(design: &Design, fixed: &Fixed) -> Vec<String> {
+fn fixed_lines(design: &Design, fixed: &FixedDesign) -> Vec<String> {
     let (law, loss) = (&fixed.law, &fixed.loss);
     let header = [
         "Fixed point",

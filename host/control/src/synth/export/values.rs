@@ -2,7 +2,7 @@
 
 use super::Provenance;
 use super::text::omitted_lines;
-use crate::synth::{Design, Fixed, Signal};
+use crate::synth::{Design, FixedDesign, Signal};
 use std::fmt::Display;
 
 /// Comma-separated.
@@ -17,7 +17,7 @@ pub(super) fn names(signals: &[Signal]) -> Vec<String> {
 }
 
 /// What the head of a file says, a line each.
-pub(super) fn head(design: &Design, fixed: &Fixed, made: &Provenance) -> Vec<String> {
+pub(super) fn head(design: &Design, fixed: &FixedDesign, made: &Provenance) -> Vec<String> {
     let law = &fixed.law;
     let with_units =
         |signals: &[Signal]| list(signals.iter().map(|s| format!("{} [{}]", s.name, s.unit)));

@@ -4,7 +4,7 @@
 //! Chu, Fan, Lin, Wang, International Journal of Control 77 (2004) 767 (discrete); Chu, Fan, Lin,
 //! Linear Algebra and its Applications 396 (2005) 55 (continuous, by Cayley's transform).
 
-use super::square::{Fixed, Square, by_size};
+use super::square::{FixedMatrix, Square, by_size};
 use nalgebra::DMatrix;
 
 /// Most doublings: each squares the slowest closed-loop pole. One within 1e-6 of the unit circle
@@ -19,14 +19,14 @@ pub(super) fn doubling(a: DMatrix<f64>, g: DMatrix<f64>, h: DMatrix<f64>) -> Opt
     let n = a.nrows();
     by_size!(
         n,
-        N => in_registers([&a, &g, &h].map(Fixed::<N>::padded)).map(|x| x.first(n)),
+        N => in_registers([&a, &g, &h].map(FixedMatrix::<N>::padded)).map(|x| x.first(n)),
         doubled([a, g, h])
     )
 }
 
 /// Wider registers give the same bits: no product is fused with a sum.
 #[multiversion::multiversion(targets("x86_64+avx2"))]
-fn in_registers<const N: usize>(matrices: [Fixed<N>; 3]) -> Option<Fixed<N>> {
+fn in_registers<const N: usize>(matrices: [FixedMatrix<N>; 3]) -> Option<FixedMatrix<N>> {
     doubled(matrices)
 }
 

@@ -77,18 +77,18 @@ fn largest(values: &[f64]) -> f64 {
 
 /// N x N, row by row.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Fixed<const N: usize>([[f64; N]; N]);
+pub(super) struct FixedMatrix<const N: usize>([[f64; N]; N]);
 
-impl<const N: usize> Fixed<N> {
+impl<const N: usize> FixedMatrix<N> {
     /// A matrix of at most N rows, with zeros beyond them: they stay zeros in every doubling.
-    pub fn padded(m: &DMatrix<f64>) -> Fixed<N> {
+    pub fn padded(m: &DMatrix<f64>) -> FixedMatrix<N> {
         let mut rows = [[0.0; N]; N];
         for (i, row) in rows.iter_mut().enumerate().take(m.nrows()) {
             for (value, entry) in row.iter_mut().zip(m.row(i).iter()) {
                 *value = *entry;
             }
         }
-        Fixed(rows)
+        FixedMatrix(rows)
     }
 
     /// Its first n rows and columns.
@@ -105,7 +105,7 @@ fn add_row<const N: usize>(row: &mut [f64; N], factor: f64, other: &[f64; N]) {
     }
 }
 
-impl<const N: usize> Square for Fixed<N> {
+impl<const N: usize> Square for FixedMatrix<N> {
     #[inline(always)]
     fn times(&self, right: &Self) -> Self {
         let mut rows = [[0.0; N]; N];
@@ -114,12 +114,12 @@ impl<const N: usize> Square for Fixed<N> {
                 add_row(row, *factor, other);
             }
         }
-        Fixed(rows)
+        FixedMatrix(rows)
     }
 
     #[inline(always)]
     fn transposed(&self) -> Self {
-        Fixed(from_fn(|i| from_fn(|j| self.0[j][i])))
+        FixedMatrix(from_fn(|i| from_fn(|j| self.0[j][i])))
     }
 
     #[inline(always)]
@@ -138,7 +138,7 @@ impl<const N: usize> Square for Fixed<N> {
 
     #[inline(always)]
     fn symmetrise(&mut self) {
-        *self = Fixed(from_fn(|i| {
+        *self = FixedMatrix(from_fn(|i| {
             from_fn(|j| 0.5 * (self.0[i][j] + self.0[j][i]))
         }));
     }
@@ -176,7 +176,7 @@ impl<const N: usize> Square for Fixed<N> {
                 }
             }
         }
-        Some((Fixed(a), Fixed(b)))
+        Some((FixedMatrix(a), FixedMatrix(b)))
     }
 
     #[inline(always)]
@@ -220,9 +220,10 @@ mod tests {
     /// Of n x n, in registers of N.
     fn agree<const N: usize>(n: usize) {
         let (a, b) = (wave(n, 1.0), wave(n, 0.7));
-        let (mut any, mut fixed) = (a.clone(), Fixed::<N>::padded(&a));
-        let other = Fixed::<N>::padded(&b);
-        let near = |fixed: Fixed<N>, any: &DMatrix<f64>| (fixed.first(n) - any).amax() < 1e-12;
+        let (mut any, mut fixed) = (a.clone(), FixedMatrix::<N>::padded(&a));
+        let other = FixedMatrix::<N>::padded(&b);
+        let near =
+            |fixed: FixedMatrix<N>, any: &DMatrix<f64>| (fixed.first(n) - any).amax() < 1e-12;
         assert!(near(fixed.times(&other), &any.times(&b)), "{n}");
         assert!(near(fixed.transposed(), &any.transposed()), "{n}");
         any.add(&b);
@@ -234,7 +235,7 @@ mod tests {
         assert!((fixed.length() - any.length()).abs() < 1e-14, "{n}");
         any.add_identity();
         fixed.add_identity();
-        let (x, y) = fixed.solve_both(&Fixed::padded(&a), &other).unwrap();
+        let (x, y) = fixed.solve_both(&FixedMatrix::padded(&a), &other).unwrap();
         assert!((&any * x.first(n) - a).amax() < 1e-12, "{n}");
         assert!((&any * y.first(n) - b).amax() < 1e-12, "{n}");
     }
@@ -251,13 +252,13 @@ mod tests {
 
     #[test]
     fn rows_are_exchanged_and_singular_ones_refused() {
-        let one = Fixed([[1.0, 0.0], [0.0, 1.0]]);
-        let (inverse, _) = Fixed([[0.0, 2.0], [4.0, 0.0]])
+        let one = FixedMatrix([[1.0, 0.0], [0.0, 1.0]]);
+        let (inverse, _) = FixedMatrix([[0.0, 2.0], [4.0, 0.0]])
             .solve_both(&one, &one)
             .unwrap();
         assert_eq!(inverse.0, [[0.0, 0.25], [0.5, 0.0]]);
         assert!(
-            Fixed([[1.0, 2.0], [2.0, 4.0]])
+            FixedMatrix([[1.0, 2.0], [2.0, 4.0]])
                 .solve_both(&one, &one)
                 .is_none()
         );

@@ -1,7 +1,7 @@
 //! E = M'E M + F by doubling (Smith, SIAM Journal on Applied Mathematics 16 (1968) 198), and
 //! Lyapunov's equation.
 
-use super::square::{Fixed, Square, by_size};
+use super::square::{FixedMatrix, Square, by_size};
 use nalgebra::DMatrix;
 
 /// Each doubling squares M: after 60, a pole within 1e-16 of the circle has been seen to decay or
@@ -17,14 +17,17 @@ pub(in crate::synth) fn stein(
     let n = m.nrows();
     by_size!(
         n,
-        N => in_registers([&m, &f].map(Fixed::<N>::padded), accuracy).map(|e| e.first(n)),
+        N => in_registers([&m, &f].map(FixedMatrix::<N>::padded), accuracy).map(|e| e.first(n)),
         summed([m, f], accuracy)
     )
 }
 
 /// Wider registers give the same bits: no product is fused with a sum.
 #[multiversion::multiversion(targets("x86_64+avx2"))]
-fn in_registers<const N: usize>(matrices: [Fixed<N>; 2], accuracy: f64) -> Option<Fixed<N>> {
+fn in_registers<const N: usize>(
+    matrices: [FixedMatrix<N>; 2],
+    accuracy: f64,
+) -> Option<FixedMatrix<N>> {
     summed(matrices, accuracy)
 }
 

@@ -6,7 +6,7 @@
 
 use super::leave_out::{LeaveOut, Unusable};
 use super::remedy::LogColumn;
-use crate::fitting::{FitData, Horizon, guessed_nodes, predicted};
+use crate::fitting::{FitProblem, Horizon, guessed_window_starts, predicted};
 use crate::log::LEAST_ROWS;
 use crate::model::Model;
 use crate::motion::Motion;
@@ -32,7 +32,7 @@ const AFTER: usize = 3;
 pub(super) fn held_by_hand(model: &Model, motions: &[Motion]) -> Option<LeaveOut> {
     let mut runs = Vec::new();
     for (index, motion) in motions.iter().enumerate() {
-        let sigma = FitData::new(model, vec![motion.clone()], Horizon::Whole).sigma;
+        let sigma = FitProblem::new(model, vec![motion.clone()], Horizon::Whole).sigma;
         let still = Still {
             motion,
             sigma: &sigma,
@@ -128,12 +128,12 @@ impl Still<'_> {
 /// Whether the model, let go where the rig stands, would be seen to move.
 fn falls(model: &Model, still: &Still, run: &Range<usize>) -> bool {
     let part = still.motion.part(run.clone());
-    let data = FitData::new(model, vec![part], Horizon::Whole);
+    let data = FitProblem::new(model, vec![part], Horizon::Whole);
     let joints = model.link_count();
-    let mut nodes = guessed_nodes(&data);
+    let mut window_starts = guessed_window_starts(&data);
     // At rest: the slope of a few noisy samples is none.
-    nodes[0].unknowns.rows_mut(joints, joints).fill(0.0);
-    let paths = predicted(model, &data, &nodes, 0);
+    window_starts[0].unknowns.rows_mut(joints, joints).fill(0.0);
+    let paths = predicted(model, &data, &window_starts, 0);
     let (Some(path), Some(window)) = (paths.first(), data.windows.first()) else {
         return false;
     };

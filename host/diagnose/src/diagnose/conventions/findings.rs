@@ -2,7 +2,7 @@
 
 use super::leave_out::{LeaveOut, Unusable};
 use super::remedy::{LogColumn, Remedy};
-use super::search::Found;
+use super::search::LogFault;
 use super::trial::Trial;
 use crate::error::{Place, Result};
 use crate::log::{LogFinding, Proof, Severity};
@@ -22,7 +22,7 @@ pub struct ModelFile<'a> {
 
 /// A fault of the model file, mended before the next one was looked for; `model` is what it was
 /// found in.
-pub(super) fn finding(found: &Found, model: &Model, file: ModelFile) -> Result<LogFinding> {
+pub(super) fn finding(found: &LogFault, model: &Model, file: ModelFile) -> Result<LogFinding> {
     let trial = &found.trial;
     let mut remedies = vec![lines(&trial.remedy, model, file)?];
     for rival in &found.rivals {

@@ -23,7 +23,7 @@ mod trial;
 pub use findings::ModelFile;
 pub use leave_out::{LeaveOut, Unusable, leave_out};
 pub use remedy::{LogColumn, Remedy};
-pub use search::{Found, search};
+pub use search::{LogFault, search};
 pub use trial::{Trial, scales_torque_by};
 
 use crate::error::Result;

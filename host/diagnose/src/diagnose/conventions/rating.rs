@@ -6,7 +6,8 @@
 
 use super::trial::Effort;
 use crate::fitting::{
-    FitData, FitOptions, Horizon, Node, Window, fit, free_parameters, guessed_nodes, predicted,
+    FitOptions, FitProblem, Horizon, Window, WindowStart, fit, free_parameters,
+    guessed_window_starts, predicted,
 };
 use crate::model::{MeasuredSignal, Model};
 use crate::motion::Motion;
@@ -27,7 +28,7 @@ const LEAST_MOVEMENT: f64 = 5.0;
 /// A model with the motions as it reads them.
 pub(super) struct ModelReading {
     pub model: Model,
-    pub data: FitData,
+    pub data: FitProblem,
 }
 
 impl ModelReading {
@@ -40,7 +41,7 @@ impl ModelReading {
     /// The same of motions in which start errors grow as in another reading's, one by one.
     pub fn growing_like(&self, model: Model, motions: Vec<Motion>) -> ModelReading {
         let horizon = Horizon::Seconds(longest_s(&motions));
-        let data = FitData::growing_like(&model, motions, horizon, &self.data);
+        let data = FitProblem::growing_like(&model, motions, horizon, &self.data);
         ModelReading {
             data: data.cut_evenly(horizon),
             model,
@@ -51,7 +52,7 @@ impl ModelReading {
     pub fn cut(model: Model, motions: Vec<Motion>, horizon_s: f64) -> ModelReading {
         let horizon = Horizon::Seconds(horizon_s);
         ModelReading {
-            data: FitData::new(&model, motions, horizon).cut_evenly(horizon),
+            data: FitProblem::new(&model, motions, horizon).cut_evenly(horizon),
             model,
         }
     }
@@ -70,7 +71,7 @@ impl ModelReading {
     pub fn common_windows(&self, other: &ModelReading) -> Vec<Window> {
         let motions = 0..self.data.motions.len();
         let shorter = |motion: usize| {
-            let pieces = |data: &FitData| data.windows_of(motion).count();
+            let pieces = |data: &FitProblem| data.windows_of(motion).count();
             let data = if pieces(&self.data) >= pieces(&other.data) {
                 &self.data
             } else {
@@ -102,8 +103,8 @@ impl ModelReading {
         let rough = FitOptions::iterations(ITERATIONS).rough();
         let (free, options) = match effort {
             Effort::Guess => {
-                let nodes = guessed_nodes(&self.data);
-                let rating = Rating::of(&self.model, &self.data, &nodes);
+                let window_starts = guessed_window_starts(&self.data);
+                let rating = Rating::of(&self.model, &self.data, &window_starts);
                 return (rating, self.model.clone());
             }
             Effort::Starts => (Vec::new(), rough),
@@ -111,7 +112,7 @@ impl ModelReading {
             Effort::ValuesToTheEnd => (free(), FitOptions::iterations(TO_THE_END)),
         };
         let fitted = fit(&self.model, &free, &self.data, None, options);
-        let rating = Rating::of(&fitted.model, &self.data, &fitted.nodes);
+        let rating = Rating::of(&fitted.model, &self.data, &fitted.window_starts);
         (rating, fitted.model)
     }
 }
@@ -134,14 +135,14 @@ pub(super) struct Rating {
 }
 
 impl Rating {
-    fn of(model: &Model, data: &FitData, nodes: &[Node]) -> Rating {
+    fn of(model: &Model, data: &FitProblem, window_starts: &[WindowStart]) -> Rating {
         let (joints, signals) = (data.joints(), data.signals.len());
         let mut squares = vec![vec![0.0; signals]; data.windows.len()];
         let mut plain = vec![0.0; signals];
-        let guesses = guessed_nodes(data);
+        let guesses = guessed_window_starts(data);
         let (mut sum, mut count) = (0.0, 0usize);
         for motion in 0..data.motions.len() {
-            let predicted = predicted(model, data, nodes, motion);
+            let predicted = predicted(model, data, window_starts, motion);
             let windows = data.windows_of(motion);
             for ((index, window), predicted) in windows.zip(predicted) {
                 let log = &data.motions[motion];

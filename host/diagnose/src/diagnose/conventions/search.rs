@@ -27,7 +27,7 @@ const ROUNDS: usize = 3;
 
 /// A fault with its remedy, and others that do as well.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct LogFault {
     /// The best remedy.
     pub trial: Trial,
     /// Remedies that lower the error as far.
@@ -35,7 +35,7 @@ pub struct Found {
 }
 
 /// The faults found, each with those before it mended.
-pub fn search(model: &Model, motions: &[Motion]) -> Vec<Found> {
+pub fn search(model: &Model, motions: &[Motion]) -> Vec<LogFault> {
     let mut found = Vec::new();
     let (mut model, mut motions) = (model.clone(), motions.to_vec());
     for _ in 0..ROUNDS {
@@ -57,7 +57,7 @@ pub fn search(model: &Model, motions: &[Motion]) -> Vec<Found> {
 }
 
 /// The remedy that lowers the error most, if it does so clearly.
-fn fault(model: &Model, motions: &[Motion]) -> Option<Found> {
+fn fault(model: &Model, motions: &[Motion]) -> Option<LogFault> {
     let doubtful = time_units(model, spacing_s(motions));
     let mut clear = if doubtful.is_empty() {
         plausible_time(model, motions)
@@ -81,7 +81,7 @@ fn fault(model: &Model, motions: &[Motion]) -> Option<Found> {
     let mut clear = clear.into_iter();
     let trial = clear.next()?;
     let rivals = clear.filter(|rival| merit(rival) < AS_GOOD * merit(&trial));
-    Some(Found {
+    Some(LogFault {
         rivals: rivals.collect(),
         trial,
     })
@@ -203,7 +203,7 @@ fn beats_friction(
 }
 
 /// What a remedy must do to be believed.
-struct Least {
+struct CorrectionThreshold {
     ratio: f64,
     better: f64,
 }
@@ -211,7 +211,7 @@ struct Least {
 /// Share that a remedy may leave where it raises the error in rad.
 const MOST_WHERE_LARGER: f64 = 0.15;
 
-impl Least {
+impl CorrectionThreshold {
     fn allows(&self, trial: &Trial) -> bool {
         // In another unit every error in rad may be larger, but then little of the motion is left.
         let most = if trial.after_rad > trial.before_rad {
@@ -225,12 +225,12 @@ impl Least {
 
 /// What this remedy must do: alternatives without a free number less than zeros and shifts, which
 /// effects of the rig (a tilt, a delay) look like.
-fn least(bench: &RemedyTrial, remedy: &Remedy) -> Least {
-    let strict = Least {
+fn least(bench: &RemedyTrial, remedy: &Remedy) -> CorrectionThreshold {
+    let strict = CorrectionThreshold {
         ratio: 0.6,
         better: 0.75,
     };
-    let never = Least {
+    let never = CorrectionThreshold {
         ratio: 0.0,
         better: 1.0,
     };
@@ -256,11 +256,11 @@ fn least(bench: &RemedyTrial, remedy: &Remedy) -> Least {
         }
         Remedy::Unit(columns) if stands_still(bench, remedy, columns) => never,
         // Many turns of an arm are reason enough to doubt a unit.
-        Remedy::Unit(columns) if doubts_travel(bench, columns) => Least {
+        Remedy::Unit(columns) if doubts_travel(bench, columns) => CorrectionThreshold {
             ratio: 0.97,
             better: 0.5,
         },
-        _ => Least {
+        _ => CorrectionThreshold {
             ratio: 0.8,
             better: 0.7,
         },

@@ -109,11 +109,11 @@ pub(super) enum Effort {
 pub(super) struct RemedyTrial {
     pub model: Model,
     pub motions: Vec<Motion>,
-    given: Option<Given>,
+    given: Option<ModelRating>,
 }
 
 /// The model as it reads its motions.
-struct Given {
+struct ModelRating {
     reading: ModelReading,
     /// From the start states that the samples suggest.
     rating: Rating,
@@ -125,7 +125,7 @@ impl RemedyTrial {
         let rating = reading.rated(Effort::Guess);
         RemedyTrial {
             model: model.clone(),
-            given: Some(Given { reading, rating }),
+            given: Some(ModelRating { reading, rating }),
             motions,
         }
     }
@@ -144,7 +144,7 @@ impl RemedyTrial {
     pub fn tried(&self, remedy: Remedy, effort: Effort) -> Option<Trial> {
         let motions = remedy.reread(&self.model, &self.motions);
         let model = remedy.applied(&self.model);
-        let Some(Given { reading, rating }) = &self.given else {
+        let Some(ModelRating { reading, rating }) = &self.given else {
             let after = ModelReading::new(model, motions);
             let before = after.read_as(&self.model, self.motions.clone());
             return Trial::new(remedy, &before.rated(effort), &after.rated(effort));

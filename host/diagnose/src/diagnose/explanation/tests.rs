@@ -36,10 +36,10 @@ fn verdict_beside(kind: &str, found: impl FnOnce(Hypothesis, Hypothesis) -> Besi
         placebos,
     } = found(twin, idle);
     hypotheses.push(friction.clone());
-    let tried = Tried {
+    let tried = SearchOutcome {
         hypotheses,
         best: Some(friction),
-        ..Tried::default()
+        ..SearchOutcome::default()
     };
     let explanation = tried.explanation(&evaluator);
     verdict_of(&evaluator, &tried, explanation, &equivalents, placebos)
@@ -47,7 +47,7 @@ fn verdict_beside(kind: &str, found: impl FnOnce(Hypothesis, Hypothesis) -> Besi
 
 fn verdict_of(
     evaluator: &Evaluator,
-    tried: &Tried,
+    tried: &SearchOutcome,
     explanation: Explanation,
     equivalents: &[Hypothesis],
     placebos: Vec<Hypothesis>,
@@ -121,7 +121,7 @@ fn a_value_that_the_file_frees_stays_the_answer() {
         values: evaluator.base.search.free.clone(),
         ..found
     };
-    let tried = Tried::default();
+    let tried = SearchOutcome::default();
     let verdict = |evaluator: &Evaluator| {
         let explanation = Explanation::Value(&value);
         verdict_of(evaluator, &tried, explanation, &twin, Vec::new())
@@ -143,11 +143,11 @@ fn a_value_that_is_clearly_worse_is_not_the_explanation() {
     let refitted = evaluator.try_values_refitted(None);
     assert!(evaluator.accepted(base, &refitted).is_some());
     let among = |values, values_refitted, best| {
-        let tried = Tried {
+        let tried = SearchOutcome {
             values,
             values_refitted,
             best,
-            ..Tried::default()
+            ..SearchOutcome::default()
         };
         let explanation = tried.explanation(&evaluator);
         explanation.hypothesis().names()

@@ -4,7 +4,7 @@ use crate::diagnose::Verdict;
 use crate::effects::{EFFECTS, Scope};
 use crate::model::{EffectInstance, effect_on};
 use crate::motion::Motion;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, PlantMemory, StartState, predict};
 use std::path::Path;
 
 /// A link driven by this, and a passive one on it.
@@ -60,13 +60,13 @@ fn course(model: &Model) -> Vec<f64> {
         time_s,
         ..Motion::default()
     };
-    let start = Start {
+    let start = StartState {
         angle_rad: vec![1.0, -0.6],
         speed_rad_s: vec![0.0; 2],
         reading_slope: None,
     };
     let mut readings = vec![0.0; 2 * motion.len()];
-    let (plant, mut memory) = (Plant::new(model, &motion), Memory::default());
+    let (plant, mut memory) = (Plant::new(model, &motion), PlantMemory::default());
     let all = 0..motion.len();
     predict(&plant, &motion, all, &start, &mut memory, &mut readings);
     readings

@@ -8,7 +8,7 @@ use crate::fitting::Candidate;
 /// What a search has found. It is whole at any time: where the search is ended, that is what there
 /// is.
 #[derive(Debug, Clone, Default)]
-pub(in crate::diagnose) struct Found {
+pub(in crate::diagnose) struct SearchResults {
     /// The sets that were tried, by their size.
     pub sizes: Vec<Vec<Hypothesis>>,
     /// The smallest set that pays.
@@ -27,7 +27,7 @@ pub(in crate::diagnose) struct Found {
     pub is_tolerated: bool,
 }
 
-impl Found {
+impl SearchResults {
     /// What was not tried where the search was ended, in words.
     pub fn not_tried(&self, most_effects: usize) -> Vec<String> {
         let last = Stage::of_size(most_effects).max(Stage::Values);
@@ -43,13 +43,13 @@ impl Found {
 
 impl Evaluator<'_> {
     /// Puts into `found` what came of the evaluations so far.
-    pub(super) fn keep(&self, found: &mut Found, put: impl FnOnce(&mut Found)) {
+    pub(super) fn keep(&self, found: &mut SearchResults, put: impl FnOnce(&mut SearchResults)) {
         put(found);
         self.take_evaluated();
     }
 
     /// Keeps what a search had evaluated when it was ended.
-    pub fn keep_evaluated(&self, found: &mut Found) {
+    pub fn keep_evaluated(&self, found: &mut SearchResults) {
         for hypothesis in self.take_evaluated() {
             let size = hypothesis.set.len();
             let among = match (size, hypothesis.search.free.len()) {

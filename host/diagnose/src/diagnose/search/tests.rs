@@ -1,6 +1,6 @@
 use super::*;
 use crate::challenge::{Bench, Motions, bench};
-use crate::diagnose::pipeline::Searched;
+use crate::diagnose::pipeline::FinishedSearch;
 use crate::diagnose::progress::Course;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
 use crate::fitting::{Candidate, Fit, Horizon, fit_start_states};
@@ -129,9 +129,9 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
 
     assert_eq!(pair.names(), ["viscous@1", "cogging@1"]);
     assert!(!pair.evaluation.as_ref().unwrap().significant);
-    let mut found = Found {
+    let mut found = SearchResults {
         sizes: vec![Vec::new(), vec![pair]],
-        ..Found::default()
+        ..SearchResults::default()
     };
     evaluator.prune(&mut found);
     assert_eq!(found.best.unwrap().names(), ["viscous@1"]);
@@ -303,7 +303,7 @@ fn a_fit_goes_down_the_stairs_of_a_law_that_jumps() {
     );
     let (stuck, data) = (&set.search, &evaluator.search);
     let finish = FitOptions::iterations(FINISH);
-    let lower = crate::fitting::down_the_stairs(stuck.clone(), data, finish);
+    let lower = crate::fitting::descend_jumping_law(stuck.clone(), data, finish);
     assert!(lower.residuals.cost() < 0.95 * stuck.residuals.cost());
 }
 
@@ -339,7 +339,7 @@ fn a_second_search_explains_what_the_first_does_not() {
     let first = {
         let (training, held_out) = (training.clone(), held_out.clone());
         let evaluator = Evaluator::new(&model, training, held_out, &options, REACH, silent());
-        Searched::by(evaluator)
+        FinishedSearch::by(evaluator)
     };
     assert!(!first.is_explained());
     let again = AtomicBool::new(false);

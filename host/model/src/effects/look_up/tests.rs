@@ -7,9 +7,9 @@ fn ids(effects: &[&'static dyn Effect]) -> Vec<&'static str> {
 /// Ids of the effects that bear the name.
 fn called(name: &str) -> Vec<&'static str> {
     match look_up(name) {
-        Found::One(effect) => ids(&[effect]),
-        Found::Several(effects) => ids(&effects),
-        Found::Similar(_) => Vec::new(),
+        NameMatch::One(effect) => ids(&[effect]),
+        NameMatch::Several(effects) => ids(&effects),
+        NameMatch::Similar(_) => Vec::new(),
     }
 }
 
@@ -113,7 +113,7 @@ fn textbook_names_find_every_effect() {
         let (_, names) = known.unwrap_or_else(|| panic!("{id} has no textbook name here"));
         for name in names.iter().chain([&id, &effect.info().title]) {
             let found = match look_up(name) {
-                Found::Similar(effects) => ids(&effects),
+                NameMatch::Similar(effects) => ids(&effects),
                 _ => called(name),
             };
             assert!(found.contains(&id), "{name} finds {found:?}, not {id}");
@@ -170,7 +170,7 @@ fn aliases_are_said_once_and_are_neither_id_nor_title() {
 #[test]
 fn what_no_effect_is_called_is_searched_and_nonsense_finds_nothing() {
     let similar = |name: &str| match look_up(name) {
-        Found::Similar(effects) => ids(&effects),
+        NameMatch::Similar(effects) => ids(&effects),
         found => panic!("{name}: {found:?}"),
     };
     // Words of titles and aliases, in any order and number.

@@ -116,7 +116,7 @@ fn friction_called_constant_is_that_and_no_other() {
             .map(|p| p.typical.1)
             .collect();
         let at = |angle_rad, speed_rad_s, gear_load_nm, bearing_load_n| {
-            let slide = Slide {
+            let slide = FrictionState {
                 angle_rad,
                 speed_rad_s,
                 direction: 1.0,

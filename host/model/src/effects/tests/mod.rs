@@ -49,8 +49,8 @@ fn near(left: f64, right: f64) {
     assert!((left - right).abs() < 1e-12, "{left} is not {right}");
 }
 
-fn slide(speed_rad_s: f64, direction: f64) -> Slide {
-    Slide {
+fn slide(speed_rad_s: f64, direction: f64) -> FrictionState {
+    FrictionState {
         angle_rad: 0.0,
         speed_rad_s: speed_rad_s.abs(),
         direction,

@@ -157,7 +157,7 @@ impl PlanBasis {
             *aged_s = aged_s.min(kept_s - latest_s - *age_s);
             *age_s += *aged_s;
         }
-        let taken = uses::Taken {
+        let taken = uses::TakenLags {
             told,
             late_s,
             taken_s: timing.drive_delay_s,

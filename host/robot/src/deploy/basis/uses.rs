@@ -51,7 +51,7 @@ impl UsePlace {
 }
 
 /// What was taken of delays and lags.
-pub(super) struct Taken<'a> {
+pub(super) struct TakenLags<'a> {
     pub told: &'a ToldDrives,
     /// Delay of each drive, and what the observer takes of it, s.
     pub late_s: [f64; INPUTS],
@@ -64,7 +64,7 @@ pub(super) struct Taken<'a> {
 }
 
 /// What became of the drives' figures, then of each effect.
-pub(super) fn of(model: &Model, board: &Board, taken: &Taken) -> Result<Vec<EffectUse>> {
+pub(super) fn of(model: &Model, board: &Board, taken: &TakenLags) -> Result<Vec<EffectUse>> {
     let driven = model.driven_joints();
     let design = DesignModel::new(model, &upright(model), board.period_s)?;
     let drives = driven.iter().take(INPUTS).enumerate();
@@ -93,7 +93,7 @@ fn used(
     board: &Board,
     instance: &EffectInstance,
     omitted: &[OmittedEffect],
-    taken: &Taken,
+    taken: &TakenLags,
 ) -> EffectUse {
     let driven = model.driven_joints();
     let places = driven.iter().take(INPUTS).enumerate();
@@ -140,7 +140,7 @@ fn by_site(site: Site, instance: &EffectInstance, omitted: &[OmittedEffect]) -> 
     (UsePlace::Nowhere, how)
 }
 
-fn late(taken: &Taken, place: usize) -> String {
+fn late(taken: &TakenLags, place: usize) -> String {
     let whose = match taken.told.delay_s {
         Some(_) => "as told",
         None => "from command to torque",
@@ -148,7 +148,7 @@ fn late(taken: &Taken, place: usize) -> String {
     part(taken.late_s[place], taken.taken_s[place], whose)
 }
 
-fn aged(all_s: f64, taken: &Taken, place: usize) -> String {
+fn aged(all_s: f64, taken: &TakenLags, place: usize) -> String {
     let how = if taken.own_state[place] {
         "a filter's state"
     } else {

@@ -2,7 +2,7 @@
 
 use super::super::horizon::Window;
 use super::super::noise::{Noise, noise};
-use super::FitData;
+use super::FitProblem;
 use crate::model::{ColumnMean, MeasuredSignal, Model};
 use crate::motion::Motion;
 use std::ops::Range;
@@ -42,7 +42,7 @@ pub(super) fn of(
     of_joints.chain(of_rates).unzip()
 }
 
-impl FitData {
+impl FitProblem {
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.signals.len() - self.rate_joints.len()
@@ -67,7 +67,7 @@ impl FitData {
     }
 
     /// The same signals and weights of other motions.
-    pub fn measured_in(mut self, motions: Vec<Motion>) -> FitData {
+    pub fn measured_in(mut self, motions: Vec<Motion>) -> FitProblem {
         let motions = motions.into_iter();
         self.motions = motions.map(|m| m.with_rates(&self.rate_joints)).collect();
         self
@@ -87,7 +87,7 @@ impl FitData {
 
     /// The same windows with other readings in place of the measured ones, rad or rad/s: per
     /// motion and window, signal after signal. What was not measured stays so.
-    pub fn measuring(mut self, readings: &[Vec<Vec<f64>>]) -> FitData {
+    pub fn measuring(mut self, readings: &[Vec<Vec<f64>>]) -> FitProblem {
         for (motion, readings) in readings.iter().enumerate() {
             let windows: Vec<Range<usize>> = self
                 .windows_of(motion)

@@ -2,7 +2,7 @@ use super::*;
 use crate::fitting::told_values::blind;
 use crate::fitting::{FitOptions, fit};
 use crate::motion::MotionSource;
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, PlantMemory, StartState, predict};
 use std::path::Path;
 
 fn value(of: &str, value: f64, error: f64) -> OneValue {
@@ -169,14 +169,14 @@ fn driven(model: &Model, duty: impl Fn(f64) -> f64) -> Motion {
         payload_kg: 0.0,
         turned: false,
     };
-    let start = Start {
+    let start = StartState {
         angle_rad: vec![0.1],
         speed_rad_s: vec![0.0],
-        ..Start::default()
+        ..StartState::default()
     };
     let mut readings = vec![0.0; motion.len()];
     let (plant, whole) = (Plant::new(model, &motion), 0..motion.len());
-    let mut memory = Memory::default();
+    let mut memory = PlantMemory::default();
     predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
     let rounded = readings.iter().map(|rad| (rad / 0.001).round() * 0.001);
     motion.position_rad[0] = rounded.collect();
@@ -231,7 +231,7 @@ fn a_width_that_a_ramp_of_duty_shows_is_not_blind() {
     let mut truth = Model::parse(ARM, Path::new("arm.toml")).unwrap();
     truth.effects[0].values = vec![0.0803, 0.03];
     let ramp = driven(&truth, |t| 0.2 * t - 0.3);
-    let data = FitData::new(&truth, vec![ramp], Horizon::Whole);
+    let data = FitProblem::new(&truth, vec![ramp], Horizon::Whole);
     let free: Vec<ParameterPath> = ["dead_zone@1.width", "dead_zone@1.punch"]
         .map(|path| path.parse().unwrap())
         .to_vec();

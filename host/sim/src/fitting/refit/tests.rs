@@ -3,7 +3,7 @@
 use super::*;
 use crate::effects;
 use crate::motion::{Motion, MotionSource};
-use crate::sim::{Memory, Plant, Start, predict};
+use crate::sim::{Plant, PlantMemory, StartState, predict};
 use handstand_challenge::{Bench, Readings, read_arm, read_pendulum};
 use handstand_logs::{LogRequest, read};
 use std::path::Path;
@@ -65,14 +65,14 @@ fn swing(model: &Model, angle: f64) -> Motion {
 
 /// The motion with the readings of a model let go at `angle`.
 fn read_by(model: &Model, mut motion: Motion, angle: f64) -> Motion {
-    let start = Start {
+    let start = StartState {
         angle_rad: vec![angle],
         speed_rad_s: vec![0.0],
-        ..Start::default()
+        ..StartState::default()
     };
     let mut readings = vec![0.0; motion.len()];
     let plant = Plant::new(model, &motion);
-    let mut memory = Memory::default();
+    let mut memory = PlantMemory::default();
     let whole = 0..motion.len();
     predict(&plant, &motion, whole, &start, &mut memory, &mut readings);
     motion.position_rad[0] = readings
@@ -205,7 +205,7 @@ fn added_drag_leaves_no_more_than_the_truth_whatever_valleys_friction_makes() {
             believed_and_true(&read_pendulum(seed, Readings::NoisySteps));
         let drag = [Candidate::named("air_drag@1", &believed).unwrap()];
         let added = refit_with(&believed, &drag, &split, None, &|_| {}).unwrap();
-        let data = FitData::new(&believed, split.training.clone(), Horizon::Whole);
+        let data = FitProblem::new(&believed, split.training.clone(), Horizon::Whole);
         let true_rad = fit_start_states(&truth, &data).rms(&data);
         let [_, after_rad] = added.fitted_rad;
         assert!(

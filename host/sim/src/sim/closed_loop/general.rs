@@ -2,10 +2,10 @@
 
 use crate::effects::MemoryCell;
 use crate::sim::drive::DriveInput;
-use crate::sim::rows::{Few, Many, Rows};
+use crate::sim::rows::{DynamicRows, FixedRows, Rows};
 use crate::sim::sensor_state::SensorState;
 use crate::sim::stepper::Stepper;
-use crate::sim::{Plant, Start};
+use crate::sim::{Plant, StartState};
 use std::fmt;
 
 /// A state of any number of joints.
@@ -33,26 +33,26 @@ pub(super) struct GeneralState<R: Rows> {
     sensors: SensorState,
 }
 
-impl GeneralState<Many> {
+impl GeneralState<DynamicRows> {
     /// At these relative angles and speeds.
     pub(super) fn boxed(plant: &Plant, angle: Vec<f64>, speed: Vec<f64>) -> Box<dyn General> {
-        let start = Start {
+        let start = StartState {
             angle_rad: angle,
             speed_rad_s: speed,
             reading_slope: None,
         };
         match plant.len() {
-            1 => Box::new(GeneralState::<Few<1>>::new(plant, &start)),
-            2 => Box::new(GeneralState::<Few<2>>::new(plant, &start)),
-            3 => Box::new(GeneralState::<Few<3>>::new(plant, &start)),
-            4 => Box::new(GeneralState::<Few<4>>::new(plant, &start)),
-            _ => Box::new(GeneralState::<Many>::new(plant, &start)),
+            1 => Box::new(GeneralState::<FixedRows<1>>::new(plant, &start)),
+            2 => Box::new(GeneralState::<FixedRows<2>>::new(plant, &start)),
+            3 => Box::new(GeneralState::<FixedRows<3>>::new(plant, &start)),
+            4 => Box::new(GeneralState::<FixedRows<4>>::new(plant, &start)),
+            _ => Box::new(GeneralState::<DynamicRows>::new(plant, &start)),
         }
     }
 }
 
 impl<R: Rows> GeneralState<R> {
-    fn new(plant: &Plant, start: &Start) -> Self {
+    fn new(plant: &Plant, start: &StartState) -> Self {
         let mut sensors = SensorState::default();
         sensors.begin(plant, start);
         sensors.step(plant, (&start.angle_rad, &start.speed_rad_s), 0.0);

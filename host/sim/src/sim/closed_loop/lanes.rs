@@ -5,7 +5,7 @@
 
 use super::Outcome;
 use super::equations::{Absolute, Equations};
-use super::run::{Next, Run};
+use super::run::{Run, RunStep};
 use crate::dynamics::{Dense, Lanes};
 use std::array::from_fn;
 
@@ -42,8 +42,8 @@ impl<const N: usize> LaneRun<'_, N> {
     #[inline]
     fn next(&mut self) -> Option<Outcome> {
         match self.run.next(&mut |_| ()) {
-            Next::Over(outcome) => Some(outcome),
-            Next::Span(span_s) => {
+            RunStep::Over(outcome) => Some(outcome),
+            RunStep::Span(span_s) => {
                 (self.steps, self.step_s) = self.run.closed.plant.steps(span_s);
                 None
             }

@@ -55,7 +55,7 @@ pub(super) struct Run<'a> {
 
 /// What a run needs next.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Next {
+pub(super) enum RunStep {
     /// The robot must go on for this long, s, under constant inputs.
     Span(f64),
     /// Nothing: it is over.
@@ -113,12 +113,12 @@ impl<'a> Run<'a> {
 
     /// Does all that is due now; what comes next. After a span the robot must have moved.
     #[inline]
-    pub(super) fn next(&mut self, see: &mut impl FnMut(Sample<'_>)) -> Next {
+    pub(super) fn next(&mut self, see: &mut impl FnMut(Sample<'_>)) -> RunStep {
         loop {
             if self.now_s >= self.sample_s
                 && let Some(outcome) = self.take_sample(see)
             {
-                return Next::Over(outcome);
+                return RunStep::Over(outcome);
             }
             self.obey_due();
             let next_s = match self.pending.due_s() {
@@ -129,7 +129,7 @@ impl<'a> Run<'a> {
             self.now_s = next_s;
             if span_s > 0.0 {
                 self.tally.torque(&self.body.drive_nm, span_s);
-                return Next::Span(span_s);
+                return RunStep::Span(span_s);
             }
         }
     }
@@ -218,8 +218,8 @@ impl<'a> Run<'a> {
     pub(super) fn finish(mut self, mut see: impl FnMut(Sample<'_>)) -> Outcome {
         loop {
             match self.next(&mut see) {
-                Next::Over(outcome) => return outcome,
-                Next::Span(span_s) => {
+                RunStep::Over(outcome) => return outcome,
+                RunStep::Span(span_s) => {
                     let plant = &self.closed.plant;
                     plant.advance(&mut self.body, &self.inputs, span_s);
                 }

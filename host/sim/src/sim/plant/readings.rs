@@ -2,7 +2,7 @@
 
 use super::Plant;
 use crate::sim::joint_plan::ActiveEffect;
-use crate::sim::run::Start;
+use crate::sim::run::StartState;
 
 impl Plant {
     /// What the encoders read at these relative angles (joint 1 from hanging), rad in the log's
@@ -21,7 +21,7 @@ impl Plant {
 
     /// What a joint's encoder reads at a state and how fast that changes, rad and rad/s, before any
     /// effect with memory.
-    pub fn reading(&self, joint: usize, state: &Start) -> (f64, f64) {
+    pub fn reading(&self, joint: usize, state: &StartState) -> (f64, f64) {
         let angle_rad = self.encoded_rad(joint, &state.angle_rad);
         (angle_rad, self.encoded_rad_s(joint, &state.speed_rad_s))
     }

@@ -6,8 +6,8 @@
 //! a window. Before a motion's first sample and after its last the inputs are as they are there.
 
 use super::Run;
-use crate::sim::Start;
-use crate::sim::memory::Memory;
+use crate::sim::StartState;
+use crate::sim::memory::PlantMemory;
 use crate::sim::rows::Rows;
 use std::ops::Range;
 
@@ -16,9 +16,9 @@ impl<R: Rows> Run<'_, R> {
     pub(super) fn record_offset(
         mut self,
         stretch: Range<usize>,
-        memory: &mut Memory,
+        memory: &mut PlantMemory,
         readings: &mut [f64],
-    ) -> Start {
+    ) -> StartState {
         let (plant, motion, samples) = (self.plant, self.motion, stretch.len());
         let due_s = |signal: usize, next: usize| {
             motion.time_s[stretch.start + next] - plant.offset_s(signal)
@@ -40,7 +40,7 @@ impl<R: Rows> Run<'_, R> {
                 for (readings, next) in readings.chunks_mut(samples).zip(next) {
                     readings[next..].fill(f64::NAN);
                 }
-                *memory = Memory::default();
+                *memory = PlantMemory::default();
                 return self.state();
             }
             readings[signal * samples + next[signal]] = self.sensors.reading[signal];
@@ -48,7 +48,7 @@ impl<R: Rows> Run<'_, R> {
             // Here the simulation of a stretch that follows begins.
             if end.is_none() && taken_s >= end_s {
                 let state = self.state();
-                *memory = Memory {
+                *memory = PlantMemory {
                     effects: self.stepper.memory().clone(),
                     sensors: self.sensors.clone(),
                     ended: Some((stretch.end - 1, state.clone())),
@@ -100,8 +100,8 @@ mod tests {
         }
     }
 
-    fn start(angle_rad: [f64; 2]) -> Start {
-        Start {
+    fn start(angle_rad: [f64; 2]) -> StartState {
+        StartState {
             angle_rad: angle_rad.to_vec(),
             speed_rad_s: vec![0.0; 2],
             reading_slope: None,
@@ -109,9 +109,9 @@ mod tests {
     }
 
     /// Readings of the whole motion, joint by joint.
-    fn read(model: &Model, motion: &Motion, start: &Start) -> Vec<f64> {
+    fn read(model: &Model, motion: &Motion, start: &StartState) -> Vec<f64> {
         let mut readings = vec![0.0; 2 * motion.len()];
-        let (plant, mut memory) = (Plant::new(model, motion), Memory::default());
+        let (plant, mut memory) = (Plant::new(model, motion), PlantMemory::default());
         let all = 0..motion.len();
         predict(&plant, motion, all, start, &mut memory, &mut readings);
         readings
@@ -189,8 +189,8 @@ mod tests {
                 ("time_offset", 1, second),
             ]);
             let whole = read(&model, &motion, &start([0.3, 0.0]));
-            let (plant, mut memory) = (Plant::new(&model, &motion), Memory::default());
-            let mut predicted = |stretch: Range<usize>, start: &Start| {
+            let (plant, mut memory) = (Plant::new(&model, &motion), PlantMemory::default());
+            let mut predicted = |stretch: Range<usize>, start: &StartState| {
                 let mut readings = vec![0.0; 2 * stretch.len()];
                 let end = predict(&plant, &motion, stretch, start, &mut memory, &mut readings);
                 (readings, end)
@@ -220,7 +220,7 @@ mod tests {
                 for angle_rad in [0.2, f64::NAN, 1e300] {
                     let mut readings = vec![0.0; 2 * stretch.len()];
                     let (start, stretch) = (start([angle_rad, 0.0]), stretch.clone());
-                    let mut memory = Memory::default();
+                    let mut memory = PlantMemory::default();
                     predict(&plant, &motion, stretch, &start, &mut memory, &mut readings);
                     let lost = readings.iter().filter(|reading| reading.is_nan()).count();
                     if angle_rad == 0.2 && !offset_s.is_nan() {

@@ -2,7 +2,7 @@
 
 use super::{Contact, Stepper};
 use crate::sim::drive::DriveInput;
-use crate::sim::forces::At;
+use crate::sim::forces::StateView;
 use crate::sim::plant::Plant;
 use crate::sim::rows::Rows;
 
@@ -33,7 +33,7 @@ impl<R: Rows> Stepper<R> {
             #[inline(always)]
             |angle, speed, slope: &mut R::Of<f64>| {
                 let (angle, speed) = (angle.as_ref(), speed.as_ref());
-                let at = At {
+                let at = StateView {
                     angle,
                     speed,
                     contact,
@@ -59,7 +59,7 @@ impl<R: Rows> Stepper<R> {
             let (slope, own_slope) = slope.split_at_mut(joints);
             forces.auxiliary.place.copy_from_slice(own_place);
             forces.auxiliary.speed.copy_from_slice(own_speed);
-            let at = At {
+            let at = StateView {
                 angle,
                 speed,
                 contact,

@@ -3,7 +3,7 @@
 use super::*;
 use crate::effects::named;
 use crate::model::{Drive, EffectInstance, Model};
-use crate::sim::rows::{Few, Many};
+use crate::sim::rows::{DynamicRows, FixedRows};
 use std::path::Path;
 
 /// Joints that stop, stick and let go, by the equations in closed form and by recursion.
@@ -18,8 +18,8 @@ fn farthest(effects: &[(&str, usize, &[f64])]) -> (f64, usize) {
     model.effects = effects.iter().map(instance).collect();
     let plant = Plant::without_log(&model);
     let (angle, speed) = ([0.3, 0.2, -0.4], [0.0, 0.5, -0.2]);
-    let mut closed = Stepper::<Few<3>>::new(&plant, &angle, &speed);
-    let mut recursive = Stepper::<Many>::new(&plant, &angle, &speed);
+    let mut closed = Stepper::<FixedRows<3>>::new(&plant, &angle, &speed);
+    let mut recursive = Stepper::<DynamicRows>::new(&plant, &angle, &speed);
     let (mut off, mut held) = (0.0_f64, 0);
     for step in 0..600 {
         let pull = if step / 100 % 2 == 0 { 0.06 } else { -0.03 };
@@ -66,7 +66,7 @@ fn swung_rad(step_s: f64) -> f64 {
         values: vec![0.3],
     }];
     let plant = Plant::without_log(&model);
-    let mut stepper = Stepper::<Few<3>>::new(&plant, &[0.0, 0.5, 0.0], &[0.0; 3]);
+    let mut stepper = Stepper::<FixedRows<3>>::new(&plant, &[0.0, 0.5, 0.0], &[0.0; 3]);
     for _ in 0..(0.6 / step_s).round() as usize {
         stepper.advance(&plant, &[DriveInput::ZERO; 3], step_s);
     }
@@ -101,7 +101,7 @@ fn weightless(effects: &[(&str, &[f64])]) -> Plant {
 
 /// Angle after `span_s` under a constant torque from rest.
 fn pulled_rad(plant: &Plant, torque_nm: f64, span_s: f64, step_s: f64) -> f64 {
-    let mut stepper = Stepper::<Few<1>>::new(plant, &[0.0], &[0.0]);
+    let mut stepper = Stepper::<FixedRows<1>>::new(plant, &[0.0], &[0.0]);
     let pull = DriveInput {
         input: torque_nm,
         ..DriveInput::ZERO
@@ -123,7 +123,7 @@ fn swung_on_base_rad(let_go_rad: f64, stiffness_n_m: f64) -> f64 {
         values: vec![stiffness_n_m, 1.0, 0.1],
     }];
     let plant = Plant::without_log(&model);
-    let mut stepper = Stepper::<Few<3>>::new(&plant, &[let_go_rad, 0.0, 0.0], &[0.0; 3]);
+    let mut stepper = Stepper::<FixedRows<3>>::new(&plant, &[let_go_rad, 0.0, 0.0], &[0.0; 3]);
     let mut most_rad = 0.0_f64;
     for _ in 0..500 {
         stepper.advance(&plant, &[DriveInput::ZERO; 3], 2e-3);

@@ -4,14 +4,14 @@
 use super::assumed::{AssumedJoint, AssumedStates};
 use super::horizon::Window;
 use crate::motion::Motion;
-use crate::sim::{HiddenQuantity, HiddenUnknown, Plant, Start};
+use crate::sim::{HiddenQuantity, HiddenUnknown, Plant, StartState};
 use nalgebra::{DVector, Matrix3, Vector3};
 
 /// Start state of a window with n joints: 3 n unknowns, and those that no reading tells. Where a
 /// sensor trails, the angle follows from the readings' speed and the joint's speed from their
 /// acceleration; so where columns are off in time by different times.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Node {
+pub struct WindowStart {
     /// What the n encoders read, rad in the log's convention; then how the log's angles change,
     /// rad/s; then how these speeds change, rad/s^2, which says nothing where no sensor trails and
     /// all columns are off by the same time. Behind these, what is hidden, in the order of
@@ -22,7 +22,7 @@ pub struct Node {
 /// What the samples around a window's start say of its node, and how surely.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StartGuess {
-    pub node: Node,
+    pub window_start: WindowStart,
     /// Standard deviations of the node's unknowns.
     pub deviation: DVector<f64>,
     /// The least and the most that they may be: so many deviations off, but for shares.
@@ -91,7 +91,7 @@ impl StartGuess {
         StartGuess {
             low: &unknowns - &reach,
             high: &unknowns + &reach,
-            node: Node { unknowns },
+            window_start: WindowStart { unknowns },
             deviation,
         }
     }
@@ -99,7 +99,7 @@ impl StartGuess {
     /// Has what is hidden as unknowns, too: expected as it is `left` by the window before, the less
     /// surely the less the samples say of its joint.
     pub fn hide(&mut self, hidden: &[HiddenUnknown], left: &[f64]) {
-        let joints = self.node.unknowns.len() / 3;
+        let joints = self.window_start.unknowns.len() / 3;
         for (unknown, left) in hidden.iter().zip(left) {
             let doubt =
                 |order: usize| HIDDEN_DEVIATIONS * self.deviation[order * joints + unknown.joint];
@@ -115,7 +115,7 @@ impl StartGuess {
                     (middle, doubt(1), (-reach, reach))
                 }
             };
-            push(&mut self.node.unknowns, middle);
+            push(&mut self.window_start.unknowns, middle);
             push(&mut self.deviation, deviation);
             push(&mut self.low, low);
             push(&mut self.high, high);
@@ -124,46 +124,49 @@ impl StartGuess {
 
     /// Which unknowns lie on the edge of what the samples allow, and on which side: -1, +1, or 0
     /// inside.
-    pub fn edges(&self, node: &Node) -> Vec<f64> {
+    pub fn edges(&self, window_start: &WindowStart) -> Vec<f64> {
         let edge = |i: usize| {
-            let (value, near) = (node.unknowns[i], 1e-9 * self.deviation[i]);
+            let (value, near) = (window_start.unknowns[i], 1e-9 * self.deviation[i]);
             match () {
                 () if value <= self.low[i] + near => -1.0,
                 () if value >= self.high[i] - near => 1.0,
                 () => 0.0,
             }
         };
-        (0..node.unknowns.len()).map(edge).collect()
+        (0..window_start.unknowns.len()).map(edge).collect()
     }
 
     /// Keeps a node within what the samples allow: what a start state can't be, it may not absorb.
-    pub fn clamp(&self, node: &mut Node) {
-        for (i, value) in node.unknowns.iter_mut().enumerate() {
+    pub fn clamp(&self, window_start: &mut WindowStart) {
+        for (i, value) in window_start.unknowns.iter_mut().enumerate() {
             *value = value.clamp(self.low[i], self.high[i]);
         }
     }
 
     /// Precision of each unknown of a node, and its distance to the guess.
-    pub fn prior(&self, node: &Node) -> (DVector<f64>, DVector<f64>) {
+    pub fn prior(&self, window_start: &WindowStart) -> (DVector<f64>, DVector<f64>) {
         let precision = self.deviation.map(|deviation| deviation.powi(-2));
-        (precision, &self.node.unknowns - &node.unknowns)
+        (
+            precision,
+            &self.window_start.unknowns - &window_start.unknowns,
+        )
     }
 }
 
-impl Node {
+impl WindowStart {
     /// The node the samples around a window's start suggest.
     pub(super) fn guess(
         motion: &Motion,
         sigma: &[f64],
         assumed: &AssumedStates,
         window: &Window,
-    ) -> Node {
-        StartGuess::of(motion, sigma, assumed, window).node
+    ) -> WindowStart {
+        StartGuess::of(motion, sigma, assumed, window).window_start
     }
 
     /// Has what is hidden as unknowns, too: what of it is not known as it is expected.
     pub(super) fn hide_as(&mut self, guess: &StartGuess) {
-        let expected = &guess.node.unknowns;
+        let expected = &guess.window_start.unknowns;
         for i in self.unknowns.len()..expected.len() {
             push(&mut self.unknowns, expected[i]);
         }
@@ -181,13 +184,13 @@ impl Node {
     }
 
     /// The simulator's start state.
-    pub fn start(&self, plant: &Plant) -> Start {
+    pub fn start(&self, plant: &Plant) -> StartState {
         let joints = plant.len();
         let (reading, rates) = self.unknowns.as_slice().split_at(joints);
         let (speed, rates) = rates.split_at(joints);
         let acceleration = &rates[..joints];
         let [reading, speed] = plant.at_begin([reading, speed, acceleration]);
-        Start {
+        StartState {
             angle_rad: plant.decode_rad(&plant.ahead_rad(&reading, &speed)),
             speed_rad_s: plant.decode_rad_s(&plant.ahead_rad_s(&speed, acceleration)),
             reading_slope: Some(plant.reading_slopes(&speed, acceleration)),

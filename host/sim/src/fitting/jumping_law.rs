@@ -5,13 +5,13 @@
 //! resumed from the lowest of the places that lie along its values, as far as these are uncertain.
 
 use super::covariance::inverse;
-use super::data::FitData;
+use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::jacobian::difference;
-use super::node::Node;
 use super::normal::NormalEquations;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
+use super::window_start::WindowStart;
 use crate::effects::{SMOOTH_DIFFERENCE, named};
 use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
@@ -58,24 +58,24 @@ const STATED: Descent = Descent {
 
 /// The fit, or one that is lower down by what tells explanations apart. The fit must have its
 /// derivatives.
-pub fn down_the_stairs(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+pub fn descend_jumping_law(found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
     COMPARED.from(found, data, options)
 }
 
 /// The fit, or one that is lower down by what counts where its values are stated. The fit must have
 /// its derivatives.
-pub(crate) fn down_the_last_stairs(found: Fit, data: &FitData, options: FitOptions) -> Fit {
+pub(crate) fn descend_to_the_end(found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
     STATED.from(found, data, options)
 }
 
 impl Descent {
     /// From places along those values that belong to laws that jump.
-    fn from(self, mut found: Fit, data: &FitData, options: FitOptions) -> Fit {
+    fn from(self, mut found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
         for _ in 0..self.times {
-            let Some((model, nodes)) = self.lowest(&found, data) else {
+            let Some((model, window_starts)) = self.lowest(&found, data) else {
                 break;
             };
-            let lower = fit(&model, &found.free, data, Some(&nodes), options);
+            let lower = fit(&model, &found.free, data, Some(&window_starts), options);
             if !self.is_lower(lower.residuals.cost(), &found) {
                 break;
             }
@@ -93,7 +93,7 @@ impl Descent {
     }
 
     /// The lowest place along those values, all else fitted, if it is lower than the fit.
-    fn lowest(self, found: &Fit, data: &FitData) -> Option<(Model, Vec<Node>)> {
+    fn lowest(self, found: &Fit, data: &FitProblem) -> Option<(Model, Vec<WindowStart>)> {
         let free = found.free.iter().enumerate();
         let jumping: Vec<usize> = free
             .filter(|(_, path)| jumps(path))
@@ -112,19 +112,19 @@ impl Descent {
         let cost = |place: &Fit| place.residuals.cost();
         let lowest = places.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
         let is_lower = self.is_lower(cost(&lowest), found);
-        is_lower.then_some((lowest.model, lowest.nodes))
+        is_lower.then_some((lowest.model, lowest.window_starts))
     }
 }
 
 /// The fit, or one elsewhere on its stairs, where it suits other motions better: which command a
 /// law swallows is told by the motions that have one near, and these may be the ones held out.
-pub fn told_by_others(mut found: Fit, data: &FitData, others: &FitData) -> Fit {
+pub fn choose_by_other_motions(mut found: Fit, data: &FitProblem, others: &FitProblem) -> Fit {
     let jumping: Vec<ParameterPath> = found.free.iter().filter(|p| jumps(p)).copied().collect();
     for path in jumping {
         let predicted = fit_start_states(&found.model, others);
-        let places = places_on_stair(&found, data, &path).into_par_iter();
+        let places = places_on_one_step(&found, data, &path).into_par_iter();
         let costs = places.map(|place| {
-            let cost = residuals(&place, others, &predicted.nodes).cost();
+            let cost = residuals(&place, others, &predicted.window_starts).cost();
             (place, cost)
         });
         let mut places: Vec<(Model, f64)> = costs.collect();
@@ -139,7 +139,7 @@ pub fn told_by_others(mut found: Fit, data: &FitData, others: &FitData) -> Fit {
 }
 
 /// The model with this value moved alone over the stair on which the fit stands, from end to end.
-fn places_on_stair(found: &Fit, data: &FitData, path: &ParameterPath) -> Vec<Model> {
+fn places_on_one_step(found: &Fit, data: &FitProblem, path: &ParameterPath) -> Vec<Model> {
     let from = path.get(&found.model).unwrap_or(f64::NAN);
     let (low, high) = path.bounds(&found.model);
     let moved = |at: f64| {
@@ -148,7 +148,7 @@ fn places_on_stair(found: &Fit, data: &FitData, path: &ParameterPath) -> Vec<Mod
     };
     let (cost, one_stair) = (found.residuals.cost(), ONE_STAIR * variance(found));
     let is_on_stair = |at: f64| {
-        let moved = moved(at).map(|model| residuals(&model, data, &found.nodes).cost());
+        let moved = moved(at).map(|model| residuals(&model, data, &found.window_starts).cost());
         moved.is_some_and(|moved| (moved - cost).abs() < one_stair)
     };
     let step = OF_DIFFERENCE * difference(path, from);
@@ -181,7 +181,7 @@ fn farthest(step: f64, holds: impl Fn(f64) -> bool) -> f64 {
 
 /// Where a value that is moved alone, by parts of its standard error, leaves least of those places
 /// that lie on other stairs than the fit.
-fn lowest_alone(found: &Fit, data: &FitData, value: usize, error: f64) -> Vec<f64> {
+fn lowest_alone(found: &Fit, data: &FitProblem, value: usize, error: f64) -> Vec<f64> {
     let (path, from) = (found.free[value], found.values()[value]);
     let (low, high) = path.bounds(&found.model);
     let between = (OF_ERROR * error).max(OF_DIFFERENCE * difference(&path, from));
@@ -191,7 +191,7 @@ fn lowest_alone(found: &Fit, data: &FitData, value: usize, error: f64) -> Vec<f6
         let mut model = found.model.clone();
         let is_possible = (low..=high).contains(&at) && path.set(&mut model, at);
         is_possible.then_some(())?;
-        let moved = residuals(&model, data, &found.nodes).cost();
+        let moved = residuals(&model, data, &found.window_starts).cost();
         ((moved - cost).abs() > one_stair).then_some((moved, at))
     });
     let mut places: Vec<(f64, f64)> = places.collect();

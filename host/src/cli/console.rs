@@ -14,7 +14,7 @@ use std::time::Instant;
 
 /// Where the output of one run goes, and in which form.
 #[derive(Debug, Clone)]
-pub struct Talk {
+pub struct Console {
     /// Whether data is JSON.
     pub json: bool,
     /// The command line of this run.
@@ -24,12 +24,12 @@ pub struct Talk {
     transcript: bool,
 }
 
-impl Talk {
+impl Console {
     /// Data to stdout, as JSON if asked; messages to stderr unless quiet.
     pub fn new(json: bool, quiet: bool) -> Self {
         let words = std::env::args_os().skip(1);
         let words = words.map(|word| format!(" {}", word.to_string_lossy()));
-        Talk {
+        Console {
             json,
             command: format!("handstand{}", words.collect::<String>()),
             quiet,
@@ -39,7 +39,7 @@ impl Talk {
 
     /// For a step of a longer run: its data go to stderr, as messages do.
     pub fn transcript(&self, command: String) -> Self {
-        Talk {
+        Console {
             json: false,
             command,
             quiet: self.quiet,
@@ -77,7 +77,7 @@ impl Talk {
     /// Data for programs.
     ///
     /// # Errors
-    /// As [`Talk::print`].
+    /// As [`Console::print`].
     pub fn data(&self, data: &impl Serialize) -> Result<()> {
         let text = serde_json::to_string_pretty(data)
             .map_err(|error| Error::file("stdout", "write", error.into()))?;
@@ -87,7 +87,7 @@ impl Talk {
     /// A result: `data` for programs, `text` for people.
     ///
     /// # Errors
-    /// As [`Talk::print`].
+    /// As [`Console::print`].
     pub fn result(&self, data: &impl Serialize, text: impl FnOnce() -> String) -> Result<()> {
         if self.json {
             self.data(data)
@@ -123,11 +123,11 @@ impl Talk {
     pub fn progress(&self) -> impl Fn(Progress) + Sync {
         let bar = self.bar(0);
         let lines = (!self.quiet && !std::io::stderr().is_terminal()).then(Lines::default);
-        let talk = self.clone();
+        let console = self.clone();
         move |progress| match &lines {
             Some(lines) => {
                 if lines.is_due() {
-                    talk.say(&progress_line(&progress));
+                    console.say(&progress_line(&progress));
                 }
             }
             None => show(&bar, progress),
