@@ -6,7 +6,7 @@ use super::edits::{
 };
 use super::rig::Rig;
 use handstand::Model;
-use handstand::diagnose::conventions::{LogColumn, Remedy, scales_torque_by};
+use handstand::diagnose::conventions::{Correction, LogColumn, scales_torque_by};
 use handstand::model::{AngleZero, Angles, Unit};
 use handstand::motion::Motion;
 use std::f64::consts::{PI, TAU};
@@ -102,7 +102,7 @@ impl Spoiling {
         let Some(column) = LogColumn::Input(joint).column(&rig.model) else {
             return false;
         };
-        let mended = Remedy::Drive(joint, rig.model.joints[joint].drive.clone(), column.unit);
+        let mended = Correction::Drive(joint, rig.model.joints[joint].drive.clone(), column.unit);
         scales_torque_by(&mended, &self.applied(rig).model).is_some()
     }
 
@@ -178,7 +178,7 @@ impl Spoiling {
             }
             Spoiling::Shift(column, shift_s) => {
                 // What was taken later is written too early: the remedy moves it back.
-                let moved = Remedy::Shift(column, -shift_s);
+                let moved = Correction::Shift(column, -shift_s);
                 *motions = moved.reread(model, motions);
             }
             Spoiling::Stalled => motions.iter_mut().take(1).for_each(stall),
@@ -188,7 +188,7 @@ impl Spoiling {
     }
 
     /// Whether this remedy mends it.
-    pub fn mended_by(&self, remedy: &Remedy, rig: &Rig, spoiled: &Spoiled) -> bool {
+    pub fn mended_by(&self, remedy: &Correction, rig: &Rig, spoiled: &Spoiled) -> bool {
         let near = |value: f64, wanted: f64, by: f64| (value - wanted).abs() <= by;
         let factor = |quantity: LogColumn, unit: &Unit| {
             quantity
@@ -196,7 +196,7 @@ impl Spoiling {
                 .map_or(0.0, |column| unit.si / column.unit.si)
         };
         let scaled = |quantity: LogColumn, wanted: f64| match remedy {
-            Remedy::Unit(columns) => {
+            Correction::Unit(columns) => {
                 let mut columns = columns.iter();
                 columns.any(|(q, unit)| {
                     *q == quantity && near(factor(quantity, unit) / wanted, 1.0, 0.03)
@@ -205,7 +205,7 @@ impl Spoiling {
             _ => false,
         };
         let offset = |joint: usize| match remedy {
-            Remedy::Offset(LogColumn::Position(j), offset) if *j == joint => {
+            Correction::Offset(LogColumn::Position(j), offset) if *j == joint => {
                 let column = LogColumn::Position(joint).column(&spoiled.model)?;
                 Some(offset - column.offset)
             }
@@ -219,7 +219,7 @@ impl Spoiling {
                 let (is, was) = (spoiled.model.angle_zero, rig.model.angle_zero);
                 let wanted = was.from_hanging_rad() - is.from_hanging_rad();
                 let turned = |o: f64| near((o - wanted + PI).rem_euclid(TAU), PI, 0.15);
-                *remedy == Remedy::AngleZero(was) || offset(0).is_some_and(turned)
+                *remedy == Correction::AngleZero(was) || offset(0).is_some_and(turned)
             }
             Spoiling::Degrees(joint) => scaled(LogColumn::Position(joint), PI / 180.0),
             Spoiling::Radians(joint) => scaled(LogColumn::Position(joint), 180.0 / PI),
@@ -229,16 +229,16 @@ impl Spoiling {
                 LogColumn::Input(joint),
                 1.0 / input_factor(&rig.model, joint),
             ),
-            Spoiling::Angles => matches!(remedy, Remedy::Angles(_)),
+            Spoiling::Angles => matches!(remedy, Correction::Angles(_)),
             Spoiling::Drive(joint, _) => match remedy {
-                Remedy::Drive(j, drive, _) => {
+                Correction::Drive(j, drive, _) => {
                     *j == joint && drive.name() == rig.model.joints[joint].drive.name()
                 }
                 _ => false,
             },
             Spoiling::Milliseconds => scaled(LogColumn::Time, 1e-3),
             Spoiling::Shift(column, shift_s) => match remedy {
-                Remedy::Shift(c, s) => *c == column && near(*s / shift_s, 1.0, 0.5),
+                Correction::Shift(c, s) => *c == column && near(*s / shift_s, 1.0, 0.5),
                 _ => false,
             },
             Spoiling::Stalled | Spoiling::Clipped(_) => false,
@@ -246,8 +246,8 @@ impl Spoiling {
     }
 }
 
-fn reverses(remedy: &Remedy, quantity: LogColumn) -> bool {
-    matches!(remedy, Remedy::Reverse(columns) if columns.contains(&quantity))
+fn reverses(remedy: &Correction, quantity: LogColumn) -> bool {
+    matches!(remedy, Correction::Reverse(columns) if columns.contains(&quantity))
 }
 
 fn other_zero(zero: AngleZero) -> AngleZero {

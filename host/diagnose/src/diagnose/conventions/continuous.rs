@@ -1,7 +1,7 @@
 //! Remedies with a free number: a zero that lies elsewhere, a column that is shifted in time.
 
-use super::remedy::{LogColumn, Remedy};
-use super::trial::{Effort, RemedyTrial, Trial};
+use super::remedy::{Correction, LogColumn};
+use super::trial::{CorrectionTrial, Effort, Trial};
 use crate::log::LEAST_ROWS;
 use crate::motion::Motion;
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ const LEAST_STEP_S: f64 = 0.02;
 const REFINEMENTS: usize = 7;
 
 /// The best zero of each joint's angle, and the best shift of each column against the others.
-pub(super) fn continuous(bench: &RemedyTrial) -> Vec<Remedy> {
+pub(super) fn continuous(bench: &CorrectionTrial) -> Vec<Correction> {
     let model = &bench.model;
     let mut found = Vec::new();
     for joint in 0..model.link_count() {
@@ -36,23 +36,23 @@ pub(super) fn continuous(bench: &RemedyTrial) -> Vec<Remedy> {
     found
 }
 
-fn zero(bench: &RemedyTrial, joint: usize) -> Option<Remedy> {
+fn zero(bench: &CorrectionTrial, joint: usize) -> Option<Correction> {
     let quantity = LogColumn::Position(joint);
     let given = quantity.column(&bench.model)?.offset;
     let step = TAU / ZEROS as f64;
     let offsets =
         (1..ZEROS).map(|i| given + step * i as f64 - if 2 * i > ZEROS { TAU } else { 0.0 });
     let best = best(bench, offsets.collect(), step, |offset| {
-        Remedy::Offset(quantity, offset)
+        Correction::Offset(quantity, offset)
     })?;
-    let Remedy::Offset(_, offset) = best.remedy else {
+    let Correction::Offset(_, offset) = best.remedy else {
         return None;
     };
     let off = (offset - given + PI).rem_euclid(TAU) - PI;
     (off.abs() > LEAST_ZERO_RAD).then_some(best.remedy)
 }
 
-fn shift(bench: &RemedyTrial, quantity: LogColumn) -> Option<Remedy> {
+fn shift(bench: &CorrectionTrial, quantity: LogColumn) -> Option<Correction> {
     let given = quantity.column(&bench.model)?.shift_s;
     let samples: usize = bench.motions.iter().map(|m| m.len()).sum();
     let seconds: f64 = bench.motions.iter().map(|m| m.duration_s()).sum();
@@ -65,7 +65,7 @@ fn shift(bench: &RemedyTrial, quantity: LogColumn) -> Option<Remedy> {
     let steps = (-SHIFT_STEPS..=SHIFT_STEPS).filter(|i| *i != 0 && leaves_samples(i));
     let shifts = steps.map(|i| given + step * f64::from(i)).collect();
     let best = best(bench, shifts, step, |shift_s| {
-        Remedy::Shift(quantity, shift_s)
+        Correction::Shift(quantity, shift_s)
     })?;
     Some(best.remedy)
 }
@@ -81,10 +81,10 @@ fn spares(motion: &Motion, seconds: f64) -> bool {
 
 /// The best of some values, refined within a step of it by golden section.
 fn best(
-    bench: &RemedyTrial,
+    bench: &CorrectionTrial,
     values: Vec<f64>,
     step: f64,
-    remedy: impl Fn(f64) -> Remedy + Sync,
+    remedy: impl Fn(f64) -> Correction + Sync,
 ) -> Option<Trial> {
     let tried = |value: f64| bench.tried(remedy(value), Effort::Guess);
     let by_ratio = |a: &(f64, Trial), b: &(f64, Trial)| a.1.ratio().total_cmp(&b.1.ratio());
@@ -124,9 +124,9 @@ mod tests {
     fn a_motion_shorter_than_every_shift_is_shifted_by_none() {
         let mut short = motion("short", 800);
         short.time_s.iter_mut().for_each(|t| *t *= 1e-5);
-        let bench = RemedyTrial::new(&model(position_drive(), columns()), vec![short]);
+        let bench = CorrectionTrial::new(&model(position_drive(), columns()), vec![short]);
         let shifts = continuous(&bench).into_iter();
-        let shifts = shifts.filter(|remedy| matches!(remedy, Remedy::Shift(..)));
+        let shifts = shifts.filter(|remedy| matches!(remedy, Correction::Shift(..)));
         assert_eq!(shifts.collect::<Vec<_>>(), []);
     }
 }

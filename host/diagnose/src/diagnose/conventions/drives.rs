@@ -1,8 +1,8 @@
 //! Other kinds of drive that the input column may belong to.
 
-use super::remedy::{LogColumn, Remedy, named_unit};
+use super::remedy::{Correction, LogColumn, named_unit};
 use super::reread::written;
-use super::trial::{Effort, RemedyTrial, Trial};
+use super::trial::{CorrectionTrial, Effort, Trial};
 use crate::model::{Dimension, Drive, Model, Motor, Unit};
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ const GAINS_PER_RAD: [f64; 4] = [1.5, 5.0, 15.0, 50.0];
 const GAINS_S_PER_RAD: [f64; 3] = [0.2, 1.0, 5.0];
 
 /// For each driven joint, the best drive of each other kind that the input may be meant for.
-pub(super) fn drives(bench: &RemedyTrial) -> Vec<Remedy> {
+pub(super) fn drives(bench: &CorrectionTrial) -> Vec<Correction> {
     let joints = bench.model.driven_joints().into_iter();
     // Of a slide, torques that hold the chain level say nothing.
     let joints = joints.filter(|joint| bench.model.joints[*joint].slide.is_none());
@@ -32,7 +32,7 @@ fn names_its_unit(model: &Model, joint: usize) -> bool {
     column.is_some_and(|column| named_unit(column) == Some(column.unit.name))
 }
 
-fn of_joint(bench: &RemedyTrial, joint: usize) -> Vec<Remedy> {
+fn of_joint(bench: &CorrectionTrial, joint: usize) -> Vec<Correction> {
     let model = &bench.model;
     let given = &model.joints[joint].drive;
     let motors = match given.motor() {
@@ -84,7 +84,7 @@ fn of_joint(bench: &RemedyTrial, joint: usize) -> Vec<Remedy> {
     };
     let goals = with_gains(&GAINS_S_PER_RAD, &speed);
     offer(goals, Dimension::Speed, &|unit| written.follows_speed(unit));
-    let tried = |(drive, unit)| bench.tried(Remedy::Drive(joint, drive, unit), Effort::Guess);
+    let tried = |(drive, unit)| bench.tried(Correction::Drive(joint, drive, unit), Effort::Guess);
     let best = |kind: Vec<(Drive, Unit)>| {
         let trials = kind.into_par_iter().filter_map(tried);
         trials.min_by(|a: &Trial, b: &Trial| a.ratio().total_cmp(&b.ratio()))
@@ -141,7 +141,7 @@ impl Line {
 }
 
 impl Written {
-    fn of(bench: &RemedyTrial, joint: usize) -> Written {
+    fn of(bench: &CorrectionTrial, joint: usize) -> Written {
         let (mut angles, mut speeds, mut most) = (Vec::new(), Vec::new(), 0.0_f64);
         let column = bench.model.log.joints[joint].input.as_ref();
         for motion in &bench.motions {

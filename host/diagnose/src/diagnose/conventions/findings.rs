@@ -1,7 +1,7 @@
 //! Faults as findings of a log check: what was found, the remedy, and the proof.
 
 use super::leave_out::{LeaveOut, Unusable};
-use super::remedy::{LogColumn, Remedy};
+use super::remedy::{Correction, LogColumn};
 use super::search::LogFault;
 use super::trial::Trial;
 use crate::error::{Place, Result};
@@ -78,22 +78,24 @@ impl Doubt {
 fn doubt(trial: &Trial, model: &Model) -> Option<Doubt> {
     // Samples seconds apart need no model to be doubted.
     match &trial.remedy {
-        Remedy::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => None,
+        Correction::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => None,
         _ if model.guessed => Some(Doubt::Guessed),
         _ if trial.after > NEAR => Some(Doubt::FarOff),
         _ => None,
     }
 }
 
-fn kind(remedy: &Remedy) -> &'static str {
+fn kind(remedy: &Correction) -> &'static str {
     match remedy {
-        Remedy::Reverse(_) => "sign",
-        Remedy::AngleZero(_) | Remedy::Offset(..) => "zero",
-        Remedy::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => "time_unit",
-        Remedy::Unit(_) => "unit",
-        Remedy::Angles(_) => "angles",
-        Remedy::Drive(..) => "drive",
-        Remedy::Shift(..) => "time_shift",
+        Correction::Reverse(_) => "sign",
+        Correction::AngleZero(_) | Correction::Offset(..) => "zero",
+        Correction::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => {
+            "time_unit"
+        }
+        Correction::Unit(_) => "unit",
+        Correction::Angles(_) => "angles",
+        Correction::Drive(..) => "drive",
+        Correction::Shift(..) => "time_shift",
     }
 }
 
@@ -106,9 +108,9 @@ fn name(quantity: LogColumn, model: &Model) -> String {
     names.join(" and ")
 }
 
-fn what(remedy: &Remedy, model: &Model) -> String {
+fn what(remedy: &Correction, model: &Model) -> String {
     match remedy {
-        Remedy::Reverse(columns) => {
+        Correction::Reverse(columns) => {
             let names: Vec<String> = columns.iter().map(|q| name(*q, model)).collect();
             let (count, s) = if names.len() > 1 {
                 ("count", "")
@@ -117,11 +119,11 @@ fn what(remedy: &Remedy, model: &Model) -> String {
             };
             format!("{} {count}{s} the other way round", names.join(" and "))
         }
-        Remedy::AngleZero(zero) => {
+        Correction::AngleZero(zero) => {
             let place = zero.name();
             format!("the angles are zero where the first link is {place}")
         }
-        Remedy::Offset(quantity, offset) => {
+        Correction::Offset(quantity, offset) => {
             let given = quantity.column(model).map_or(0.0, |column| column.offset);
             format!(
                 "{} is {:.3} {} off",
@@ -132,20 +134,20 @@ fn what(remedy: &Remedy, model: &Model) -> String {
                     .map_or("rad", |column| column.unit.dimension.si_unit())
             )
         }
-        Remedy::Unit(columns) => {
+        Correction::Unit(columns) => {
             let each = columns
                 .iter()
                 .map(|(column, unit)| written_in(*column, unit, model));
             each.collect::<Vec<_>>().join(", ")
         }
-        Remedy::Angles(angles) => {
+        Correction::Angles(angles) => {
             let from = match angles {
                 Angles::Relative => "the link before",
                 Angles::Absolute => "the world",
             };
             format!("each angle is measured from {from}")
         }
-        Remedy::Drive(joint, drive, unit) => {
+        Correction::Drive(joint, drive, unit) => {
             let input = name(LogColumn::Input(*joint), model);
             let meaning = match drive.name() {
                 "torque" => "a torque",
@@ -159,7 +161,7 @@ fn what(remedy: &Remedy, model: &Model) -> String {
                 unit.name
             )
         }
-        Remedy::Shift(quantity, shift_s) => {
+        Correction::Shift(quantity, shift_s) => {
             let when = if *shift_s > 0.0 { "later" } else { "earlier" };
             let ms = 1e3 * shift_s.abs();
             format!(
@@ -221,7 +223,7 @@ fn mrad(rad: f64) -> String {
 }
 
 /// The lines of the model file that the remedy changes: `arm.toml:13: position = { .. }`.
-fn lines(remedy: &Remedy, model: &Model, file: ModelFile) -> Result<String> {
+fn lines(remedy: &Correction, model: &Model, file: ModelFile) -> Result<String> {
     let old = Model::parse(file.text, file.path)?;
     // What was mended before is in `model`, and so in the lines.
     let text = set_reading(file.text, file.path, &old, &remedy.applied(model))?;

@@ -1,6 +1,6 @@
 //! What may be wrong with how a model reads the motion of one joint.
 
-use super::remedy::{LogColumn, Remedy, other_units, travel_rad};
+use super::remedy::{Correction, LogColumn, other_units, travel_rad};
 use crate::model::{Model, Unit};
 use crate::motion::Motion;
 use std::f64::consts::PI;
@@ -10,7 +10,7 @@ const PLAUSIBLE_RAD: std::ops::Range<f64> = 0.01..60.0;
 
 /// Other signs, units and half turns of what is measured of a joint: its angle, or its rate where
 /// that alone is.
-pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Remedy> {
+pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<Correction> {
     let (position, velocity) = (LogColumn::Position(joint), LogColumn::Velocity(joint));
     let Some(column) = position.column(model) else {
         return of_speed(model, motions, velocity);
@@ -21,7 +21,7 @@ pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<
     let rate_slope = speed_slope(motions, joint, |motion| motion.rate(joint));
     let agree = [(velocity, slope), (LogColumn::Rate(joint), rate_slope)].into_iter();
     let along = agree.filter_map(|(speed, slope)| slope.filter(|s| *s > 0.0).map(|_| speed));
-    let mut all = vec![Remedy::Reverse(
+    let mut all = vec![Correction::Reverse(
         [position].into_iter().chain(along).collect(),
     )];
     let travel_rad = travel_rad(motions, joint);
@@ -31,23 +31,23 @@ pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<
         .filter(plausible);
     all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
     if joint > 0 && model.joints[joint].slide.is_none() {
-        all.push(Remedy::Offset(position, column.offset + PI));
+        all.push(Correction::Offset(position, column.offset + PI));
     }
     all
 }
 
 /// Other signs and units of a speed, if the logs have it.
-pub(super) fn of_speed(model: &Model, motions: &[Motion], speed: LogColumn) -> Vec<Remedy> {
+pub(super) fn of_speed(model: &Model, motions: &[Motion], speed: LogColumn) -> Vec<Correction> {
     if speed.column(model).is_none() {
         return Vec::new();
     }
     let units = other_units(model, motions, speed).into_iter();
-    let units = units.map(|unit| Remedy::Unit(vec![(speed, unit)]));
-    units.chain([Remedy::Reverse(vec![speed])]).collect()
+    let units = units.map(|unit| Correction::Unit(vec![(speed, unit)]));
+    units.chain([Correction::Reverse(vec![speed])]).collect()
 }
 
 /// The position in another unit; a speed that agreed with it goes along.
-fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) -> Remedy {
+fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) -> Correction {
     let mut columns = vec![(LogColumn::Position(joint), unit)];
     let velocity = LogColumn::Velocity(joint);
     let agreed = slope.is_some_and(|slope| (0.8..1.25).contains(&slope));
@@ -65,7 +65,7 @@ fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) ->
     {
         columns.push((velocity, unit));
     }
-    Remedy::Unit(columns)
+    Correction::Unit(columns)
 }
 
 /// A logged speed per speed of the angle, by least squares; none where no speed is logged.

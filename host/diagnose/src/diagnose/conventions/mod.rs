@@ -1,6 +1,6 @@
 //! Do signs, zeros, units, angles, drives and times of a model file agree with its logs?
 //!
-//! Each doubt is a [`Remedy`], a change of the model file. The given model is simulated along the
+//! Each doubt is a [`Correction`], a change of the model file. The given model is simulated along the
 //! logs as it reads them, and as it would read them with the remedy; a remedy counts only if it
 //! lowers the error clearly, and the errors are its proof. Samples that no remedy mends, of a
 //! joint that stands still or an input cut off at a limit, are named as rows to leave out.
@@ -22,7 +22,7 @@ mod trial;
 
 pub use findings::ModelFile;
 pub use leave_out::{LeaveOut, Unusable, leave_out};
-pub use remedy::{LogColumn, Remedy};
+pub use remedy::{Correction, LogColumn};
 pub use search::{LogFault, search};
 pub use trial::{Trial, scales_torque_by};
 
@@ -100,7 +100,7 @@ fn readable(request: &LogRequest, model: &Model) -> Vec<Motion> {
     else {
         return Vec::new();
     };
-    let mended = Remedy::Unit(vec![(LogColumn::Time, milliseconds)]).applied(model);
+    let mended = Correction::Unit(vec![(LogColumn::Time, milliseconds)]).applied(model);
     let motions = read(requests, &mended.log).unwrap_or_default();
     let back = motions
         .iter()

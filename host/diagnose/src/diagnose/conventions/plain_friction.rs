@@ -5,7 +5,7 @@
 //! remedy says nothing unless it does better than friction does.
 
 use super::rating::ModelReading;
-use super::remedy::{LogColumn, Remedy};
+use super::remedy::{Correction, LogColumn};
 use super::trial::Effort;
 use crate::effects::EFFECTS;
 use crate::fitting::Candidate;
@@ -15,11 +15,11 @@ use rayon::prelude::*;
 
 /// Whether a remedy changes how strong, or of which sign, a joint's input is, or how far the joint
 /// moves: what friction or its lack may look like.
-pub(super) fn rivals_friction(remedy: &Remedy) -> Option<usize> {
+pub(super) fn rivals_friction(remedy: &Correction) -> Option<usize> {
     match remedy {
-        Remedy::Drive(joint, ..) => Some(*joint),
-        Remedy::Unit(columns) => columns.iter().find_map(|(column, _)| joint_of(*column)),
-        Remedy::Reverse(columns) => match columns.as_slice() {
+        Correction::Drive(joint, ..) => Some(*joint),
+        Correction::Unit(columns) => columns.iter().find_map(|(column, _)| joint_of(*column)),
+        Correction::Reverse(columns) => match columns.as_slice() {
             [LogColumn::Input(joint)] => Some(*joint),
             _ => None,
         },

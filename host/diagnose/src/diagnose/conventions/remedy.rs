@@ -57,7 +57,7 @@ impl LogColumn {
 
 /// A change of the model file that may mend how it reads its logs.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Remedy {
+pub enum Correction {
     /// These columns count the other way round.
     Reverse(Vec<LogColumn>),
     /// The angles are zero elsewhere.
@@ -74,25 +74,25 @@ pub enum Remedy {
     Shift(LogColumn, f64),
 }
 
-impl Remedy {
+impl Correction {
     /// The model that reads its logs so.
     pub fn applied(&self, model: &Model) -> Model {
         let mut new = model.clone();
         match self {
-            Remedy::Reverse(columns) => {
+            Correction::Reverse(columns) => {
                 for quantity in columns {
                     for column in quantity.columns_mut(&mut new) {
                         column.reversed = !column.reversed;
                     }
                 }
             }
-            Remedy::AngleZero(zero) => new.angle_zero = *zero,
-            Remedy::Offset(quantity, offset) => {
+            Correction::AngleZero(zero) => new.angle_zero = *zero,
+            Correction::Offset(quantity, offset) => {
                 for column in quantity.columns_mut(&mut new) {
                     column.offset = *offset;
                 }
             }
-            Remedy::Unit(columns) => {
+            Correction::Unit(columns) => {
                 for (quantity, unit) in columns {
                     for column in quantity.columns_mut(&mut new) {
                         // A step of one tick goes with its unit.
@@ -104,8 +104,8 @@ impl Remedy {
                     }
                 }
             }
-            Remedy::Angles(angles) => new.angles = *angles,
-            Remedy::Drive(joint, drive, unit) => {
+            Correction::Angles(angles) => new.angles = *angles,
+            Correction::Drive(joint, drive, unit) => {
                 new.joints[*joint].drive = drive.clone();
                 // Another kind of drive has other values.
                 let has = |path: &ParameterPath| path.get(&new).is_some_and(f64::is_finite);
@@ -114,7 +114,7 @@ impl Remedy {
                     column.unit = *unit;
                 }
             }
-            Remedy::Shift(quantity, shift_s) => {
+            Correction::Shift(quantity, shift_s) => {
                 for column in quantity.columns_mut(&mut new) {
                     column.shift_s = *shift_s;
                 }
@@ -134,7 +134,7 @@ impl Remedy {
 
     /// Whether it changes a number that could have any value, not one of a few alternatives.
     pub fn is_continuous(&self) -> bool {
-        matches!(self, Remedy::Offset(..) | Remedy::Shift(..))
+        matches!(self, Correction::Offset(..) | Correction::Shift(..))
     }
 }
 
@@ -145,7 +145,7 @@ const TICKS_PER_TURN: [f64; 8] = [
 
 /// Every alternative to how the model reads its logs that has no free number: signs, zeros, units,
 /// what angles are measured from.
-pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
+pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Correction> {
     let mut all = Vec::new();
     let zeros = [
         AngleZero::Hanging,
@@ -153,9 +153,9 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
         AngleZero::Horizontal,
     ];
     let others = zeros.into_iter().filter(|zero| *zero != model.angle_zero);
-    all.extend(others.map(Remedy::AngleZero));
+    all.extend(others.map(Correction::AngleZero));
     if model.link_count() > 1 && !model.slides() {
-        all.push(Remedy::Angles(match model.angles {
+        all.push(Correction::Angles(match model.angles {
             Angles::Relative => Angles::Absolute,
             Angles::Absolute => Angles::Relative,
         }));
@@ -165,9 +165,9 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Remedy> {
         all.extend(of_speed(model, motions, LogColumn::Rate(joint)));
         if model.joints[joint].drive.is_driven() {
             let input = LogColumn::Input(joint);
-            all.push(Remedy::Reverse(vec![input]));
+            all.push(Correction::Reverse(vec![input]));
             let units = other_units(model, motions, input).into_iter();
-            all.extend(units.map(|unit| Remedy::Unit(vec![(input, unit)])));
+            all.extend(units.map(|unit| Correction::Unit(vec![(input, unit)])));
         }
     }
     all
@@ -235,7 +235,7 @@ fn are_counts(model: &Model, motions: &[Motion], quantity: LogColumn) -> bool {
 
 /// The other units of time in which the samples would lie between 0.5 ms and 0.5 s apart, where
 /// they do not as declared.
-pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
+pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Correction> {
     let plausible = 0.5e-3..0.5;
     if plausible.contains(&spacing_s) {
         return Vec::new();
@@ -251,7 +251,7 @@ pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Remedy> {
         .plain_units()
         .filter(|unit| unit.name != declared.name && !is_text(unit))
         .filter(|unit| plausible.contains(&(spacing_s / declared.si * unit.si)))
-        .map(|unit| Remedy::Unit(vec![(LogColumn::Time, unit)]))
+        .map(|unit| Correction::Unit(vec![(LogColumn::Time, unit)]))
         .collect()
 }
 
@@ -265,7 +265,7 @@ mod tests {
         model.log.time.unit = Unit::named(declared, None).unwrap();
         let units = time_units(&model, spacing_s).into_iter();
         let units = units.filter_map(|remedy| match remedy {
-            Remedy::Unit(columns) => Some(columns[0].1.name),
+            Correction::Unit(columns) => Some(columns[0].1.name),
             _ => None,
         });
         units.collect()

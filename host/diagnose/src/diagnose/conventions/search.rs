@@ -5,8 +5,8 @@ use super::drives::drives;
 use super::leave_out::without_stalled;
 use super::plain_friction::rivals_friction;
 use super::rating::ModelReading;
-use super::remedy::{LogColumn, Remedy, alternatives, time_units, travel_rad};
-use super::trial::{Effort, RemedyTrial, Trial, scales_torque_by};
+use super::remedy::{Correction, LogColumn, alternatives, time_units, travel_rad};
+use super::trial::{CorrectionTrial, Effort, Trial, scales_torque_by};
 use crate::fitting::coarsened;
 use crate::model::{Model, Unit};
 use crate::motion::{Motion, excerpts};
@@ -64,7 +64,7 @@ fn fault(model: &Model, motions: &[Motion]) -> Option<LogFault> {
     } else {
         // Few samples: as declared, each may last a thousand integration steps.
         let few = excerpts(motions, SAMPLES_CONTINUOUS);
-        let bench = RemedyTrial::of_doubtful_time(model, few);
+        let bench = CorrectionTrial::of_doubtful_time(model, few);
         let doubtful = doubtful.into_iter();
         let trials = doubtful.filter_map(|remedy| bench.tried(remedy, Effort::Guess));
         trials.filter(|trial| trial.ratio() < 1.0).collect()
@@ -95,8 +95,8 @@ const AS_GOOD: f64 = 1.15;
 fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
     let few = ModelReading::new(model.clone(), excerpts(motions, SAMPLES_CONTINUOUS));
     let model = &coarsened(model, &few.data);
-    let bench = RemedyTrial::new(model, excerpts(motions, SAMPLES));
-    let few = RemedyTrial::new(model, few.data.motions);
+    let bench = CorrectionTrial::new(model, excerpts(motions, SAMPLES));
+    let few = CorrectionTrial::new(model, few.data.motions);
     let mut remedies = alternatives(model, motions);
     remedies.extend(drives(&few));
     remedies.extend(continuous(&few));
@@ -104,7 +104,7 @@ fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
 }
 
 /// Those of the remedies that clearly lower the error.
-fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
+fn judged(bench: &CorrectionTrial, remedies: Vec<Correction>) -> Vec<Trial> {
     let screened = remedies.into_par_iter();
     let mut screened: Vec<Trial> = screened
         .filter_map(|remedy| bench.tried(remedy, Effort::Guess))
@@ -115,7 +115,7 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
     let judged = judged.filter_map(|trial| {
         // The file's free values are a start: each reading is judged with those that suit it.
         let refitted = bench.tried(trial.remedy.clone(), Effort::Values)?;
-        let is_another_drive = matches!(refitted.remedy, Remedy::Drive(..));
+        let is_another_drive = matches!(refitted.remedy, Correction::Drive(..));
         let suits = refitted.ratio() < MOST_OF_ANOTHER_DRIVE || refitted.after < LITTLE;
         if !least(bench, &refitted.remedy).allows(&refitted) || is_another_drive && !suits {
             return None;
@@ -133,7 +133,7 @@ fn judged(bench: &RemedyTrial, remedies: Vec<Remedy>) -> Vec<Trial> {
 /// The first of the sorted trials, of units of one input no more than a few.
 fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
     let units = |trial: &Trial| match &trial.remedy {
-        Remedy::Unit(columns) => match columns.as_slice() {
+        Correction::Unit(columns) => match columns.as_slice() {
             [(input @ LogColumn::Input(_), _)] => Some(*input),
             _ => None,
         },
@@ -163,13 +163,13 @@ const BEATS: f64 = 0.999;
 /// value leaves for the joints that were asked for. What does the same but for rounding does not
 /// beat it.
 fn beats_a_wrong_value(
-    bench: &RemedyTrial,
+    bench: &CorrectionTrial,
     trial: &Trial,
     off: &mut BTreeMap<usize, Option<f64>>,
 ) -> bool {
     let joint = match &trial.remedy {
-        Remedy::Drive(joint, ..) => *joint,
-        Remedy::Unit(columns) => match columns.as_slice() {
+        Correction::Drive(joint, ..) => *joint,
+        Correction::Unit(columns) => match columns.as_slice() {
             [(LogColumn::Input(joint), _)] => *joint,
             _ => return true,
         },
@@ -189,7 +189,7 @@ fn beats_a_wrong_value(
 /// Whether a remedy leaves less than plain friction at its joint does, which the model may lack, and
 /// less than no input at all. `rubbing` holds what they leave for the joints that were asked for.
 fn beats_friction(
-    bench: &RemedyTrial,
+    bench: &CorrectionTrial,
     trial: &Trial,
     rubbing: &mut BTreeMap<usize, Option<f64>>,
 ) -> bool {
@@ -225,7 +225,7 @@ impl CorrectionThreshold {
 
 /// What this remedy must do: alternatives without a free number less than zeros and shifts, which
 /// effects of the rig (a tilt, a delay) look like.
-fn least(bench: &RemedyTrial, remedy: &Remedy) -> CorrectionThreshold {
+fn least(bench: &CorrectionTrial, remedy: &Correction) -> CorrectionThreshold {
     let strict = CorrectionThreshold {
         ratio: 0.6,
         better: 0.75,
@@ -235,7 +235,7 @@ fn least(bench: &RemedyTrial, remedy: &Remedy) -> CorrectionThreshold {
         better: 1.0,
     };
     match remedy {
-        Remedy::Offset(quantity, offset) => {
+        Correction::Offset(quantity, offset) => {
             let given = quantity
                 .column(&bench.model)
                 .map_or(0.0, |column| column.offset);
@@ -246,17 +246,17 @@ fn least(bench: &RemedyTrial, remedy: &Remedy) -> CorrectionThreshold {
             }
         }
         // A drive that acts late, whatever delays it, is an effect of the library.
-        Remedy::Shift(LogColumn::Input(_), shift_s) if *shift_s > 0.0 => never,
-        Remedy::Shift(_, shift_s) => {
+        Correction::Shift(LogColumn::Input(_), shift_s) if *shift_s > 0.0 => never,
+        Correction::Shift(_, shift_s) => {
             if shift_s.abs() > 0.008 {
                 strict
             } else {
                 never
             }
         }
-        Remedy::Unit(columns) if stands_still(bench, remedy, columns) => never,
+        Correction::Unit(columns) if stands_still(bench, remedy, columns) => never,
         // Many turns of an arm are reason enough to doubt a unit.
-        Remedy::Unit(columns) if doubts_travel(bench, columns) => CorrectionThreshold {
+        Correction::Unit(columns) if doubts_travel(bench, columns) => CorrectionThreshold {
             ratio: 0.97,
             better: 0.5,
         },
@@ -275,7 +275,11 @@ const DOUBTFUL_RAD: f64 = 30.0;
 const STILL_RAD: f64 = 0.1;
 
 /// Whether one of the columns is an angle that hardly moves as the remedy reads it.
-fn stands_still(bench: &RemedyTrial, remedy: &Remedy, columns: &[(LogColumn, Unit)]) -> bool {
+fn stands_still(
+    bench: &CorrectionTrial,
+    remedy: &Correction,
+    columns: &[(LogColumn, Unit)],
+) -> bool {
     let motions = remedy.reread(&bench.model, &bench.motions);
     columns.iter().any(|(quantity, _)| match quantity {
         LogColumn::Position(joint) => travel_rad(&motions, *joint) < STILL_RAD,
@@ -284,7 +288,7 @@ fn stands_still(bench: &RemedyTrial, remedy: &Remedy, columns: &[(LogColumn, Uni
 }
 
 /// Whether one of the columns is an angle that travels too far as it is read.
-fn doubts_travel(bench: &RemedyTrial, columns: &[(LogColumn, Unit)]) -> bool {
+fn doubts_travel(bench: &CorrectionTrial, columns: &[(LogColumn, Unit)]) -> bool {
     columns.iter().any(|(quantity, _)| match quantity {
         LogColumn::Position(joint) => travel_rad(&bench.motions, *joint) > DOUBTFUL_RAD,
         _ => false,

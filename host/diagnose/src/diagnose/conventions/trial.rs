@@ -2,7 +2,7 @@
 
 use super::plain_friction::left_by_friction;
 use super::rating::{ModelReading, Rating};
-use super::remedy::{LogColumn, Remedy};
+use super::remedy::{Correction, LogColumn};
 use crate::diagnose::values::values_of;
 use crate::effects::TorqueScale;
 use crate::fitting::Candidate;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
     /// The change.
-    pub remedy: Remedy,
+    pub remedy: Correction,
     /// Share of the motion that the model leaves unexplained as it is: 0 nothing, 1 as much as
     /// going on at constant speed does.
     pub before: f64,
@@ -34,7 +34,7 @@ impl Trial {
         self.after / self.before.max(1e-12)
     }
 
-    fn new(remedy: Remedy, before: &Rating, after: &Rating) -> Option<Trial> {
+    fn new(remedy: Correction, before: &Rating, after: &Rating) -> Option<Trial> {
         let (mut better, mut changed) = (0.0, 0.0);
         for (before, after) in before.shares.iter().zip(&after.shares) {
             let square = |shares: &[f64]| shares.iter().map(|s| s * s).sum::<f64>();
@@ -64,10 +64,10 @@ const PLAUSIBLE: f64 = 3.0;
 
 /// The factor by which a remedy multiplies a joint's torques, where that is all it does but for
 /// the supply, and a stall torque may be off by as much; else none.
-pub fn scales_torque_by(remedy: &Remedy, model: &Model) -> Option<f64> {
+pub fn scales_torque_by(remedy: &Correction, model: &Model) -> Option<f64> {
     let (joint, drive, unit) = match remedy {
-        Remedy::Drive(joint, drive, unit) => (*joint, drive, unit),
-        Remedy::Unit(columns) => match columns.as_slice() {
+        Correction::Drive(joint, drive, unit) => (*joint, drive, unit),
+        Correction::Unit(columns) => match columns.as_slice() {
             [(LogColumn::Input(joint), unit)] => (*joint, &model.joints[*joint].drive, unit),
             _ => return None,
         },
@@ -106,7 +106,7 @@ pub(super) enum Effort {
 }
 
 /// Tries remedies on a model and its motions.
-pub(super) struct RemedyTrial {
+pub(super) struct CorrectionTrial {
     pub model: Model,
     pub motions: Vec<Motion>,
     given: Option<ModelRating>,
@@ -119,11 +119,11 @@ struct ModelRating {
     rating: Rating,
 }
 
-impl RemedyTrial {
-    pub fn new(model: &Model, motions: Vec<Motion>) -> RemedyTrial {
+impl CorrectionTrial {
+    pub fn new(model: &Model, motions: Vec<Motion>) -> CorrectionTrial {
         let reading = ModelReading::new(model.clone(), motions.clone());
         let rating = reading.rated(Effort::Guess);
-        RemedyTrial {
+        CorrectionTrial {
             model: model.clone(),
             given: Some(ModelRating { reading, rating }),
             motions,
@@ -132,8 +132,8 @@ impl RemedyTrial {
 
     /// For times so far apart that the model cannot be run over them for long: as it reads them,
     /// it is rated on the windows of the remedy.
-    pub fn of_doubtful_time(model: &Model, motions: Vec<Motion>) -> RemedyTrial {
-        RemedyTrial {
+    pub fn of_doubtful_time(model: &Model, motions: Vec<Motion>) -> CorrectionTrial {
+        CorrectionTrial {
             model: model.clone(),
             given: None,
             motions,
@@ -141,7 +141,7 @@ impl RemedyTrial {
     }
 
     /// The remedy's effect, on windows in which start errors grow in neither reading.
-    pub fn tried(&self, remedy: Remedy, effort: Effort) -> Option<Trial> {
+    pub fn tried(&self, remedy: Correction, effort: Effort) -> Option<Trial> {
         let motions = remedy.reread(&self.model, &self.motions);
         let model = remedy.applied(&self.model);
         let Some(ModelRating { reading, rating }) = &self.given else {
@@ -150,7 +150,7 @@ impl RemedyTrial {
             return Trial::new(remedy, &before.rated(effort), &after.rated(effort));
         };
         // A shift shortens the motions and leaves how errors grow in them; nothing else does.
-        if matches!(remedy, Remedy::Shift(..)) {
+        if matches!(remedy, Correction::Shift(..)) {
             let shortened = self.shortened_as(reading, &motions);
             let after = reading.growing_like(model, motions);
             let [before, after] = rated_alike([&shortened, &after], effort);
@@ -273,12 +273,12 @@ mod tests {
     /// the one on the windows that suit both readings.
     fn upside_down(seed: u64) -> (Trial, f64, f64) {
         let (model, training, _) = arm(seed, &["viscous"]);
-        let remedy = Remedy::AngleZero(match model.angle_zero {
+        let remedy = Correction::AngleZero(match model.angle_zero {
             AngleZero::Upright => AngleZero::Hanging,
             _ => AngleZero::Upright,
         });
         let after = ModelReading::new(remedy.applied(&model), training.clone());
-        let trial = RemedyTrial::new(&model, training);
+        let trial = CorrectionTrial::new(&model, training);
         let given = trial.given.as_ref().unwrap();
         let [on_common, _] = rated_alike([&given.reading, &after], Effort::Guess);
         let (as_is, on_common) = (given.rating.share(), on_common.share());

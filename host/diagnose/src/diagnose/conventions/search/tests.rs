@@ -11,8 +11,8 @@ fn units_of_one_input_do_not_crowd_out_other_remedies() {
         better: 1.0,
     };
     let unit = Unit::named("N m", None).unwrap();
-    let input = |joint| tried(Remedy::Unit(vec![(LogColumn::Input(joint), unit)]));
-    let reversed = tried(Remedy::Reverse(vec![LogColumn::Input(0)]));
+    let input = |joint| tried(Correction::Unit(vec![(LogColumn::Input(joint), unit)]));
+    let reversed = tried(Correction::Reverse(vec![LogColumn::Input(0)]));
     let mut sorted: Vec<Trial> = (0..JUDGED).map(|_| input(0)).collect();
     sorted.extend([input(1), reversed.clone()]);
     let kept = most_promising(sorted);
