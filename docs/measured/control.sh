@@ -10,6 +10,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 models=$here/../../host/models
 program=${HANDSTAND:-$here/../../target/release/handstand}
 page=$here/control.md
+trap 'rm -f "$page.new"' EXIT INT TERM
 robots=${ROBOTS:-1000} region=${REGION:-100}
 version=$("$program" --version | cut -d ' ' -f 2)
 commit=$(git -C "$here" describe --always --dirty 2>/dev/null || echo "no commit")

@@ -7,11 +7,26 @@ use handstand::fitting::{Horizon, free_parameters};
 use handstand::log::{LogFinding, LogFormat, LogRequest, LogSet, read_with_findings};
 use handstand::model::{LogColumns, ParameterPath};
 use handstand::motion::{Motion, Split};
+use handstand::output::number::{exact, short};
 use handstand::output::vacant;
 use handstand::study::compare_closed_loop;
 use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
 use std::path::{Path, PathBuf};
+
+/// The value of an option, in the unit in which it is given.
+///
+/// # Errors
+/// A value outside the range, or none at all.
+pub fn within(name: &str, value: f64, least: f64, most: f64) -> Result<f64> {
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    Err(Error::usage(
+        format!("{name} {} does not fit", exact(value)),
+        format!("give {} to {}", short(least), short(most)),
+    ))
+}
 
 /// How long models run.
 #[derive(Debug, clap::Args)]

@@ -78,7 +78,7 @@ pub fn judge(rig: &Rig, spoiling: Spoiling) -> Outcome {
         .flat_map(|f| std::iter::once(&f.trial).chain(&f.rivals));
     let right = trials
         .clone()
-        .any(|trial| spoiling.mended_by(&trial.remedy, rig, &spoiled))
+        .any(|trial| spoiling.mended_by(&trial.correction, rig, &spoiled))
         || left_out
             .iter()
             .any(|left_out| leaves_out(spoiling, left_out));
@@ -130,7 +130,7 @@ fn said(
         let (ratio, before, after, better) = (t.ratio(), t.before, t.after, t.better);
         format!(
             "{:?}: {before:.3} -> {after:.3} ({ratio:.2}, better {better:.2})",
-            t.remedy
+            t.correction
         )
     });
     let left_out = left_out.iter().map(|l| {

@@ -188,14 +188,14 @@ impl Spoiling {
     }
 
     /// Whether this remedy mends it.
-    pub fn mended_by(&self, remedy: &Correction, rig: &Rig, spoiled: &Spoiled) -> bool {
+    pub fn mended_by(&self, correction: &Correction, rig: &Rig, spoiled: &Spoiled) -> bool {
         let near = |value: f64, wanted: f64, by: f64| (value - wanted).abs() <= by;
         let factor = |quantity: LogColumn, unit: &Unit| {
             quantity
                 .column(&spoiled.model)
                 .map_or(0.0, |column| unit.si / column.unit.si)
         };
-        let scaled = |quantity: LogColumn, wanted: f64| match remedy {
+        let scaled = |quantity: LogColumn, wanted: f64| match correction {
             Correction::Unit(columns) => {
                 let mut columns = columns.iter();
                 columns.any(|(q, unit)| {
@@ -204,7 +204,7 @@ impl Spoiling {
             }
             _ => false,
         };
-        let offset = |joint: usize| match remedy {
+        let offset = |joint: usize| match correction {
             Correction::Offset(LogColumn::Position(j), offset) if *j == joint => {
                 let column = LogColumn::Position(joint).column(&spoiled.model)?;
                 Some(offset - column.offset)
@@ -212,14 +212,14 @@ impl Spoiling {
             _ => None,
         };
         match *self {
-            Spoiling::PositionSign(joint) => reverses(remedy, LogColumn::Position(joint)),
-            Spoiling::InputSign(joint) => reverses(remedy, LogColumn::Input(joint)),
+            Spoiling::PositionSign(joint) => reverses(correction, LogColumn::Position(joint)),
+            Spoiling::InputSign(joint) => reverses(correction, LogColumn::Input(joint)),
             Spoiling::Zero(joint) => offset(joint).is_some_and(|o| near(o, -OFFSET_RAD, 0.15)),
             Spoiling::AngleZero => {
                 let (is, was) = (spoiled.model.angle_zero, rig.model.angle_zero);
                 let wanted = was.from_hanging_rad() - is.from_hanging_rad();
                 let turned = |o: f64| near((o - wanted + PI).rem_euclid(TAU), PI, 0.15);
-                *remedy == Correction::AngleZero(was) || offset(0).is_some_and(turned)
+                *correction == Correction::AngleZero(was) || offset(0).is_some_and(turned)
             }
             Spoiling::Degrees(joint) => scaled(LogColumn::Position(joint), PI / 180.0),
             Spoiling::Radians(joint) => scaled(LogColumn::Position(joint), 180.0 / PI),
@@ -229,15 +229,15 @@ impl Spoiling {
                 LogColumn::Input(joint),
                 1.0 / input_factor(&rig.model, joint),
             ),
-            Spoiling::Angles => matches!(remedy, Correction::Angles(_)),
-            Spoiling::Drive(joint, _) => match remedy {
+            Spoiling::Angles => matches!(correction, Correction::Angles(_)),
+            Spoiling::Drive(joint, _) => match correction {
                 Correction::Drive(j, drive, _) => {
                     *j == joint && drive.name() == rig.model.joints[joint].drive.name()
                 }
                 _ => false,
             },
             Spoiling::Milliseconds => scaled(LogColumn::Time, 1e-3),
-            Spoiling::Shift(column, shift_s) => match remedy {
+            Spoiling::Shift(column, shift_s) => match correction {
                 Correction::Shift(c, s) => *c == column && near(*s / shift_s, 1.0, 0.5),
                 _ => false,
             },
@@ -246,8 +246,8 @@ impl Spoiling {
     }
 }
 
-fn reverses(remedy: &Correction, quantity: LogColumn) -> bool {
-    matches!(remedy, Correction::Reverse(columns) if columns.contains(&quantity))
+fn reverses(correction: &Correction, quantity: LogColumn) -> bool {
+    matches!(correction, Correction::Reverse(columns) if columns.contains(&quantity))
 }
 
 fn other_zero(zero: AngleZero) -> AngleZero {

@@ -175,7 +175,7 @@ impl Hypothesis {
             return;
         }
         let search = &self.search;
-        let window_starts = training.nodes_from(short, &search.window_starts);
+        let window_starts = training.window_starts_from(short, &search.window_starts);
         let mut fit = fit(
             &search.model,
             &search.free,
@@ -203,7 +203,7 @@ impl Hypothesis {
             return;
         };
         let found = &evaluation.fit;
-        let window_starts = training.nodes_from(before, &found.window_starts);
+        let window_starts = training.window_starts_from(before, &found.window_starts);
         let options = FitOptions::iterations(EVALUATE);
         let fit = fit(
             &found.model,

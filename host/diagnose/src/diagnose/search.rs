@@ -19,11 +19,11 @@ use crate::fitting::{FitOptions, InitialGuess};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-mod found;
 mod partners;
+mod results;
 
-pub(super) use found::SearchResults;
-use found::put_among;
+pub(super) use results::SearchResults;
+use results::put_among;
 
 impl Evaluator<'_> {
     /// Looks for the smallest set that pays, if any does, and for a wrong value; keeps in `found`

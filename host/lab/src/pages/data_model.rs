@@ -65,8 +65,8 @@ fn columns(names: &[String], model: &Model) -> Markup {
                 thead { tr { th { "Quantity" } th { "Column" } th { "Unit" } th { "Reversed" } th {
                     "Zero: add, SI" } } }
                 tbody {
-                    (column(names, "time", "Time", Some(QuantitySource::One(&log.time)), Dimension::Time,
-                        true))
+                    (column(names, "time", "Time", Some(QuantitySource::One(&log.time)),
+                        Dimension::Time, true))
                     @for (index, joint) in log.joints.iter().enumerate() {
                         @let number = index + 1;
                         (column(names, &format!("joint{number}.position"),
@@ -90,11 +90,12 @@ fn columns(names: &[String], model: &Model) -> Markup {
                             @let sensor = joint.rate_sensor.key();
                             (column(names, &format!("joint{number}.{sensor}"),
                                 &format!("Own {sensor} of joint {number}"),
-                                joint.rate.as_ref().map(QuantitySource::of), Dimension::Speed, false))
+                                joint.rate.as_ref().map(QuantitySource::of), Dimension::Speed,
+                                false))
                         }
                     }
-                    (column(names, "supply", "Supply voltage", log.supply.as_ref().map(QuantitySource::One),
-                        Dimension::Voltage, false))
+                    (column(names, "supply", "Supply voltage",
+                        log.supply.as_ref().map(QuantitySource::One), Dimension::Voltage, false))
                 }
             } }
             div.row { button { "Use these columns" } }

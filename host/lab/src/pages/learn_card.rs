@@ -108,10 +108,10 @@ fn evidence(card: &SavedCard, evaluation: &SessionEvaluation) -> String {
 }
 
 fn add(card: &SavedCard, saved: &SavedSession) -> Markup {
-    let (send, names, verb) = if !card.effects.is_empty() {
-        ("add", card.effects.join("+"), "Add it")
-    } else {
+    let (send, names, verb) = if card.effects.is_empty() {
         ("fit", card.values.join("+"), "Fit it")
+    } else {
+        ("add", card.effects.join("+"), "Add it")
     };
     html! {
         form.row data-send=(send) {

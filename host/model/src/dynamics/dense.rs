@@ -58,10 +58,10 @@ impl<const N: usize> Dense<N> {
     ) -> [f64; N] {
         let (angle, speed, load) = absolute(angle_rad, speed_rad_s, torque_nm);
         let (mass, rest) = self.equations(&angle, &speed, &load);
-        if !held.contains(&true) {
-            differences(solve_at_once(&mass, &rest))
-        } else {
+        if held.contains(&true) {
             forward_held(mass, rest, held)
+        } else {
+            differences(solve_at_once(&mass, &rest))
         }
     }
 

@@ -58,7 +58,8 @@ impl Chain {
         self.newton_euler_from(0, base, joints, &mut each);
     }
 
-    /// Speeds and accelerations outwards, then moment and force that link `i` and all beyond it ask of its joint.
+    /// Speeds and accelerations outwards, then moment and force that link `i` and all beyond it ask
+    /// of its joint.
     fn newton_euler_from(
         &self,
         i: usize,

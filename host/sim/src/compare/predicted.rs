@@ -6,7 +6,7 @@ use crate::model::MeasuredSignal;
 use crate::model::Model;
 use rayon::prelude::*;
 
-/// Predicted signals, rad or rad/s, `[motion][signal][sample]`, every window started from its node.
+/// Predicted signals, rad or rad/s, `[motion][signal][sample]`, every window from its start.
 ///
 /// Unlike the fit's residuals these are not capped, so an error counts in full however small the
 /// noise is. From where a prediction runs away to infinity its last finite value stands.

@@ -61,9 +61,9 @@ mod tests {
             residual: DVector::from_column_slice(&[1.0, -2.0, 0.5]),
             parameters: DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.3, -1.0, 2.0, 0.1]),
             window_start: DMatrix::from_row_slice(3, 1, &[0.5, 0.5, 0.0]),
-            node_precision: DVector::from_element(1, 1.0),
-            node_pull: DVector::zeros(1),
-            node_edge: vec![0.0],
+            start_precision: DVector::from_element(1, 1.0),
+            start_pull: DVector::zeros(1),
+            start_edge: vec![0.0],
         };
         let before = window.clone();
         let (values, window_start) = (

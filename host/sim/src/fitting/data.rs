@@ -221,7 +221,7 @@ impl FitProblem {
 
     /// The start states of windows of `other`, the same motions cut otherwise, that begin where
     /// windows of this data do; elsewhere what the samples suggest.
-    pub fn nodes_from(
+    pub fn window_starts_from(
         &self,
         other: &FitProblem,
         window_starts: &[WindowStart],

@@ -115,14 +115,14 @@ impl LevenbergMarquardt<'_> {
         window_start: DMatrix<f64>,
     ) -> WindowJacobian {
         let (guess, own) = (&self.guesses[w], &self.fit.window_starts[w]);
-        let (node_precision, node_pull) = guess.prior(own);
+        let (start_precision, start_pull) = guess.prior(own);
         let mut window = WindowJacobian {
             residual: DVector::from_column_slice(&self.fit.residuals.windows[w]),
             parameters,
             window_start,
-            node_precision,
-            node_pull,
-            node_edge: guess.edges(own),
+            start_precision,
+            start_pull,
+            start_edge: guess.edges(own),
         };
         window.hold_edges();
         window

@@ -64,7 +64,7 @@ pub fn descend_jumping_law(found: Fit, data: &FitProblem, options: FitOptions) -
 
 /// The fit, or one that is lower down by what counts where its values are stated. The fit must have
 /// its derivatives.
-pub(crate) fn descend_to_the_end(found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
+pub(crate) fn descend_jumping_law_fully(found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
     STATED.from(found, data, options)
 }
 
@@ -122,7 +122,7 @@ pub fn choose_by_other_motions(mut found: Fit, data: &FitProblem, others: &FitPr
     let jumping: Vec<ParameterPath> = found.free.iter().filter(|p| jumps(p)).copied().collect();
     for path in jumping {
         let predicted = fit_start_states(&found.model, others);
-        let places = places_on_one_step(&found, data, &path).into_par_iter();
+        let places = places_on_stair(&found, data, &path).into_par_iter();
         let costs = places.map(|place| {
             let cost = residuals(&place, others, &predicted.window_starts).cost();
             (place, cost)
@@ -139,7 +139,7 @@ pub fn choose_by_other_motions(mut found: Fit, data: &FitProblem, others: &FitPr
 }
 
 /// The model with this value moved alone over the stair on which the fit stands, from end to end.
-fn places_on_one_step(found: &Fit, data: &FitProblem, path: &ParameterPath) -> Vec<Model> {
+fn places_on_stair(found: &Fit, data: &FitProblem, path: &ParameterPath) -> Vec<Model> {
     let from = path.get(&found.model).unwrap_or(f64::NAN);
     let (low, high) = path.bounds(&found.model);
     let moved = |at: f64| {

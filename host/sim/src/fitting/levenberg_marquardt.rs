@@ -148,13 +148,13 @@ impl<'a> LevenbergMarquardt<'a> {
                 &step.window_starts[w],
                 &fit.residuals.windows[w],
             );
-            (window.node_precision, window.node_pull) = guess.prior(window_start);
-            window.node_edge = guess.edges(window_start);
+            (window.start_precision, window.start_pull) = guess.prior(window_start);
+            window.start_edge = guess.edges(window_start);
             window.hold_edges();
         }
     }
 
-    /// Squared residuals plus the nodes' weak priors.
+    /// Squared residuals plus the starts' weak priors.
     fn cost(&self) -> f64 {
         self.fit.residuals.cost() + self.prior_cost(&self.fit.window_starts)
     }
@@ -181,7 +181,7 @@ impl<'a> LevenbergMarquardt<'a> {
                 .iter_mut()
                 .enumerate()
                 .map(|(w, window_start)| {
-                    self.move_node(window_start, w, &normal.node_step(w, &values))
+                    self.move_node(window_start, w, &normal.start_step(w, &values))
                 })
                 .collect();
             let residuals = residuals(&model, self.data, &window_starts);

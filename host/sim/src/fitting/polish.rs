@@ -2,7 +2,7 @@
 
 use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
-use super::jumping_law::{descend_jumping_law, descend_to_the_end};
+use super::jumping_law::{descend_jumping_law, descend_jumping_law_fully};
 use super::step_size::{in_fine_steps, in_steps_for_values};
 
 /// The fit, or one that leaves less: lower down the stairs of its error, and in shorter integration
@@ -16,5 +16,5 @@ pub fn polish(found: Fit, data: &FitProblem, options: FitOptions) -> Fit {
 pub(crate) fn settle(found: Fit, data: &FitProblem) -> Fit {
     let options = FitOptions::default();
     let found = in_steps_for_values(found.resume(data, options), data, options);
-    descend_to_the_end(found, data, options)
+    descend_jumping_law_fully(found, data, options)
 }

@@ -87,7 +87,7 @@ fn moved(
     }
     let mut window_starts = fit.window_starts.clone();
     for (window, window_start) in window_starts.iter_mut().enumerate() {
-        window_start.unknowns += steps.node_step(window, by);
+        window_start.unknowns += steps.start_step(window, by);
     }
     Some((model, window_starts))
 }

@@ -64,7 +64,7 @@ impl Residuals {
     }
 }
 
-/// Residuals of a model from these nodes, motions in parallel.
+/// Residuals of a model from these window starts, motions in parallel.
 pub fn residuals(model: &Model, data: &FitProblem, window_starts: &[WindowStart]) -> Residuals {
     let per_motion: Vec<Vec<Vec<f64>>> = (0..data.motions.len())
         .into_par_iter()
@@ -78,7 +78,7 @@ pub fn residuals(model: &Model, data: &FitProblem, window_starts: &[WindowStart]
 
 /// What a model predicts for one motion's windows, in order, signal after signal: readings, rad,
 /// and rates, rad/s, of joints whose rate alone is logged and of rate sensors beside an angle's.
-/// Every window starts from its node, and the memory runs on from window to window.
+/// Every window runs from its start, and the memory runs on from window to window.
 pub fn predicted(
     model: &Model,
     data: &FitProblem,

@@ -105,7 +105,7 @@ impl Fit {
     }
 }
 
-/// Fits the free parameters and every window's start state; nodes are guessed where none are given.
+/// Fits the free parameters and every window's start state, which is guessed where none is given.
 pub fn fit(
     model: &Model,
     free: &[ParameterPath],

@@ -19,11 +19,11 @@ pub struct WindowStart {
     pub unknowns: DVector<f64>,
 }
 
-/// What the samples around a window's start say of its node, and how surely.
+/// What the samples around a window's start say of its state, and how surely.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StartGuess {
     pub window_start: WindowStart,
-    /// Standard deviations of the node's unknowns.
+    /// Standard deviations of the start's unknowns.
     pub deviation: DVector<f64>,
     /// The least and the most that they may be: so many deviations off, but for shares.
     low: DVector<f64>,
@@ -136,14 +136,14 @@ impl StartGuess {
         (0..window_start.unknowns.len()).map(edge).collect()
     }
 
-    /// Keeps a node within what the samples allow: what a start state can't be, it may not absorb.
+    /// Keeps it within what the samples allow: what a start state can't be, it may not absorb.
     pub fn clamp(&self, window_start: &mut WindowStart) {
         for (i, value) in window_start.unknowns.iter_mut().enumerate() {
             *value = value.clamp(self.low[i], self.high[i]);
         }
     }
 
-    /// Precision of each unknown of a node, and its distance to the guess.
+    /// Precision of each unknown of a window start, and its distance to the guess.
     pub fn prior(&self, window_start: &WindowStart) -> (DVector<f64>, DVector<f64>) {
         let precision = self.deviation.map(|deviation| deviation.powi(-2));
         (
@@ -154,7 +154,7 @@ impl StartGuess {
 }
 
 impl WindowStart {
-    /// The node the samples around a window's start suggest.
+    /// The start that the samples around it suggest.
     pub(super) fn guess(
         motion: &Motion,
         sigma: &[f64],

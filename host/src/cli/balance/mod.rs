@@ -40,6 +40,7 @@ mod source;
 
 use super::deploy::board::BoardArgs;
 use super::flash::agreed;
+use super::input::within;
 use super::interrupt::Interrupt;
 use super::port::{AnyLink, Ids, Port, id_list};
 use super::{Console, ExitStatus};
@@ -169,16 +170,6 @@ pub fn run(args: &BalanceArgs, console: &Console) -> Result<ExitStatus> {
 
 /// The limits that torque comes on with.
 fn checked(args: &BalanceArgs) -> Result<ArmLimits> {
-    let within = |name: &str, value: f64, low: f64, high: f64| {
-        if (low..=high).contains(&value) {
-            Ok(value)
-        } else {
-            Err(Error::usage(
-                format!("{name} {value} does not fit"),
-                format!("give {low} to {high}"),
-            ))
-        }
-    };
     within("--countdown", args.countdown, 0.0, 60.0)?;
     within("--seconds", args.seconds.unwrap_or(1.0), 0.01, 1e6)?;
     let share = within("--torque", args.torque, 0.01, 1.0)?;

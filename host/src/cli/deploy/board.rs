@@ -1,5 +1,6 @@
 //! Arguments for servos, limits and sensors of the robot.
 
+use crate::cli::input::within;
 use crate::cli::port::id_list;
 use handstand::deploy::{Board, PlanBasis, ServoPair, ToldDrives};
 use handstand::synth::controllers::BoardTiming;
@@ -116,17 +117,12 @@ impl BoardArgs {
                 "name the servos of shoulder and hip: 1+2/11+12",
             ));
         };
-        let range = within(
-            "--fallen",
-            self.fallen / Attitude::ANGLE_LSB_RAD,
-            0.0,
-            65_535.0,
-        )?;
+        let farthest_rad = f64::from(u16::MAX) * Attitude::ANGLE_LSB_RAD;
         Ok(Board {
             servos: [servo(shoulder)?, servo(hip)?],
             slew_nm: within("--slew", self.slew, 1e-3, 1e3)?,
             gyro: self.gyro()?,
-            range_rad: range * Attitude::ANGLE_LSB_RAD,
+            range_rad: within("--fallen", self.fallen, 0.0, farthest_rad)?,
             joint_range_rad: within("--joint-range", self.joint_range, 0.01, 2.6)?,
             joint_speed_rad_s: within("--joint-speed", self.joint_speed, 0.3, 100.0)?,
             ..Board::BIOLOID
@@ -142,12 +138,10 @@ impl BoardArgs {
                     "give the gyro's rad/s per ADC code, as its data sheet and the ADC say",
                 ));
             }
-            Some(step) => within(
-                "--gyro-per-code",
-                step / Attitude::RATE_LSB_RAD_S * 16.0,
-                -32_768.0,
-                32_767.0,
-            )?,
+            Some(step) => {
+                let most = f64::from(i16::MAX) * Attitude::RATE_LSB_RAD_S / 16.0;
+                within("--gyro-per-code", step, -most, most)? / Attitude::RATE_LSB_RAD_S * 16.0
+            }
             None => 0.0,
         };
         if self.gyro_zero > 1023 {
@@ -181,15 +175,4 @@ fn servo(ids: &[u8]) -> Result<ServoPair> {
         reversed: false,
         centre: Position::CENTRE.0,
     })
-}
-
-fn within(name: &str, value: f64, least: f64, most: f64) -> Result<f64> {
-    if (least..=most).contains(&value) {
-        Ok(value)
-    } else {
-        Err(Error::usage(
-            format!("{name} comes to {value}, which does not fit"),
-            format!("it has to lie between {least} and {most}"),
-        ))
-    }
 }

@@ -143,10 +143,10 @@ impl ControllerDesign for ObservedDesign {
 fn law(known: &DesignModel, options: &Options) -> Result<Surface> {
     let without = plant(known, false)?;
     let gains = regulator(known, options, &without)?;
-    let surface = if !options.sliding {
-        Surface::regulator(gains.k)
-    } else {
+    let surface = if options.sliding {
         Surface::sliding(&without, &gains.riccati)?
+    } else {
+        Surface::regulator(gains.k)
     };
     Ok(if options.offsets {
         surface.with_offsets(known.joints())

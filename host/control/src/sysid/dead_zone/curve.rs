@@ -90,14 +90,14 @@ pub fn best(points: &[(f64, f64)], limited: bool) -> Option<DeadZoneCurve> {
     let beyond = |onset: f64| inputs.iter().filter(|u| **u >= onset).count();
     let mut curves: Vec<DeadZoneCurve> = Vec::new();
     for edge in std::iter::once(0.0).chain(places.iter().copied()) {
-        let onsets: Vec<f64> = if !limited {
-            vec![f64::INFINITY]
-        } else {
+        let onsets: Vec<f64> = if limited {
             places
                 .iter()
                 .copied()
                 .filter(|onset| *onset > edge && beyond(*onset) >= LEAST)
                 .collect()
+        } else {
+            vec![f64::INFINITY]
         };
         for onset in onsets {
             let shape = |u: f64| (u - edge).clamp(0.0, onset - edge);

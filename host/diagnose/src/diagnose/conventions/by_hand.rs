@@ -4,8 +4,8 @@
 //! Most free swings made by hand begin so, for the recorder runs first. No effect of the rig
 //! explains such rows, and every fit gives way to them.
 
+use super::correction::LogColumn;
 use super::leave_out::{LeaveOut, Unusable};
-use super::remedy::LogColumn;
 use crate::fitting::{FitProblem, Horizon, guessed_window_starts, predicted};
 use crate::log::LEAST_ROWS;
 use crate::model::Model;

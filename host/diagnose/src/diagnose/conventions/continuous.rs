@@ -1,6 +1,6 @@
-//! Remedies with a free number: a zero that lies elsewhere, a column that is shifted in time.
+//! Corrections with a free number: a zero that lies elsewhere, a column that is shifted in time.
 
-use super::remedy::{Correction, LogColumn};
+use super::correction::{Correction, LogColumn};
 use super::trial::{CorrectionTrial, Effort, Trial};
 use crate::log::LEAST_ROWS;
 use crate::motion::Motion;
@@ -45,11 +45,11 @@ fn zero(bench: &CorrectionTrial, joint: usize) -> Option<Correction> {
     let best = best(bench, offsets.collect(), step, |offset| {
         Correction::Offset(quantity, offset)
     })?;
-    let Correction::Offset(_, offset) = best.remedy else {
+    let Correction::Offset(_, offset) = best.correction else {
         return None;
     };
     let off = (offset - given + PI).rem_euclid(TAU) - PI;
-    (off.abs() > LEAST_ZERO_RAD).then_some(best.remedy)
+    (off.abs() > LEAST_ZERO_RAD).then_some(best.correction)
 }
 
 fn shift(bench: &CorrectionTrial, quantity: LogColumn) -> Option<Correction> {
@@ -67,7 +67,7 @@ fn shift(bench: &CorrectionTrial, quantity: LogColumn) -> Option<Correction> {
     let best = best(bench, shifts, step, |shift_s| {
         Correction::Shift(quantity, shift_s)
     })?;
-    Some(best.remedy)
+    Some(best.correction)
 }
 
 /// Whether a motion that loses so many seconds at either end is still one.
@@ -84,9 +84,9 @@ fn best(
     bench: &CorrectionTrial,
     values: Vec<f64>,
     step: f64,
-    remedy: impl Fn(f64) -> Correction + Sync,
+    correction: impl Fn(f64) -> Correction + Sync,
 ) -> Option<Trial> {
-    let tried = |value: f64| bench.tried(remedy(value), Effort::Guess);
+    let tried = |value: f64| bench.tried(correction(value), Effort::Guess);
     let by_ratio = |a: &(f64, Trial), b: &(f64, Trial)| a.1.ratio().total_cmp(&b.1.ratio());
     let trials = values
         .into_par_iter()
@@ -126,7 +126,7 @@ mod tests {
         short.time_s.iter_mut().for_each(|t| *t *= 1e-5);
         let bench = CorrectionTrial::new(&model(position_drive(), columns()), vec![short]);
         let shifts = continuous(&bench).into_iter();
-        let shifts = shifts.filter(|remedy| matches!(remedy, Correction::Shift(..)));
+        let shifts = shifts.filter(|correction| matches!(correction, Correction::Shift(..)));
         assert_eq!(shifts.collect::<Vec<_>>(), []);
     }
 }

@@ -1,6 +1,6 @@
 //! Other kinds of drive that the input column may belong to.
 
-use super::remedy::{Correction, LogColumn, named_unit};
+use super::correction::{Correction, LogColumn, named_unit};
 use super::reread::written;
 use super::trial::{CorrectionTrial, Effort, Trial};
 use crate::model::{Dimension, Drive, Model, Motor, Unit};
@@ -90,7 +90,7 @@ fn of_joint(bench: &CorrectionTrial, joint: usize) -> Vec<Correction> {
         trials.min_by(|a: &Trial, b: &Trial| a.ratio().total_cmp(&b.ratio()))
     };
     let best = kinds.into_iter().filter_map(best);
-    best.map(|trial| trial.remedy).collect()
+    best.map(|trial| trial.correction).collect()
 }
 
 /// Torque that holds the chain from this joint on out level, or moves it by some rad/s^2 where

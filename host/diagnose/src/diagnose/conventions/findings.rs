@@ -1,7 +1,7 @@
 //! Faults as findings of a log check: what was found, the remedy, and the proof.
 
+use super::correction::{Correction, LogColumn};
 use super::leave_out::{LeaveOut, Unusable};
-use super::remedy::{Correction, LogColumn};
 use super::search::LogFault;
 use super::trial::Trial;
 use crate::error::{Place, Result};
@@ -24,24 +24,28 @@ pub struct ModelFile<'a> {
 /// found in.
 pub(super) fn finding(found: &LogFault, model: &Model, file: ModelFile) -> Result<LogFinding> {
     let trial = &found.trial;
-    let mut remedies = vec![lines(&trial.remedy, model, file)?];
+    let mut corrections = vec![lines(&trial.correction, model, file)?];
     for rival in &found.rivals {
-        remedies.push(lines(&rival.remedy, model, file)?);
+        corrections.push(lines(&rival.correction, model, file)?);
     }
     let doubt = doubt(trial, model);
-    let mut remedy = remedies.join("; or, which lowers the error as far, ");
+    let mut remedy = corrections.join("; or, which lowers the error as far, ");
     if let Some(doubt) = doubt {
         remedy = format!("{}: only if you know it, {remedy}", doubt.words());
     }
     Ok(LogFinding {
-        kind: kind(&trial.remedy),
-        severity: if doubt.is_some() || trial.remedy.is_continuous() {
+        kind: kind(&trial.correction),
+        severity: if doubt.is_some() || trial.correction.is_continuous() {
             Severity::Warn
         } else {
             Severity::Refuse
         },
         place: Some(Place::file(file.path)),
-        what: format!("{}; {}", what(&trial.remedy, model), proof(trial, model)),
+        what: format!(
+            "{}; {}",
+            what(&trial.correction, model),
+            proof(trial, model)
+        ),
         remedy,
         proof: Some(Proof {
             before_rad: trial.before_rad,
@@ -57,7 +61,7 @@ pub(super) fn finding(found: &LogFault, model: &Model, file: ModelFile) -> Resul
 enum Doubt {
     /// Its values are guesses.
     Guessed,
-    /// It is far from the log with the remedy, too.
+    /// It is far from the log with the correction, too.
     FarOff,
 }
 
@@ -77,7 +81,7 @@ impl Doubt {
 /// the model can tell.
 fn doubt(trial: &Trial, model: &Model) -> Option<Doubt> {
     // Samples seconds apart need no model to be doubted.
-    match &trial.remedy {
+    match &trial.correction {
         Correction::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => None,
         _ if model.guessed => Some(Doubt::Guessed),
         _ if trial.after > NEAR => Some(Doubt::FarOff),
@@ -85,8 +89,8 @@ fn doubt(trial: &Trial, model: &Model) -> Option<Doubt> {
     }
 }
 
-fn kind(remedy: &Correction) -> &'static str {
-    match remedy {
+fn kind(correction: &Correction) -> &'static str {
+    match correction {
         Correction::Reverse(_) => "sign",
         Correction::AngleZero(_) | Correction::Offset(..) => "zero",
         Correction::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => {
@@ -108,8 +112,8 @@ fn name(quantity: LogColumn, model: &Model) -> String {
     names.join(" and ")
 }
 
-fn what(remedy: &Correction, model: &Model) -> String {
-    match remedy {
+fn what(correction: &Correction, model: &Model) -> String {
+    match correction {
         Correction::Reverse(columns) => {
             let names: Vec<String> = columns.iter().map(|q| name(*q, model)).collect();
             let (count, s) = if names.len() > 1 {
@@ -222,11 +226,11 @@ fn mrad(rad: f64) -> String {
     crate::output::number::mrad_in_column(rad)
 }
 
-/// The lines of the model file that the remedy changes: `arm.toml:13: position = { .. }`.
-fn lines(remedy: &Correction, model: &Model, file: ModelFile) -> Result<String> {
+/// The lines of the model file that a correction changes: `arm.toml:13: position = { .. }`.
+fn lines(correction: &Correction, model: &Model, file: ModelFile) -> Result<String> {
     let old = Model::parse(file.text, file.path)?;
     // What was mended before is in `model`, and so in the lines.
-    let text = set_reading(file.text, file.path, &old, &remedy.applied(model))?;
+    let text = set_reading(file.text, file.path, &old, &correction.applied(model))?;
     let changed = changed_lines(file.text, &text)
         .into_iter()
         .map(|(number, line)| {

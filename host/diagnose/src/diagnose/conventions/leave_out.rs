@@ -2,8 +2,8 @@
 //! a limit.
 
 use super::by_hand::held_by_hand;
+use super::correction::LogColumn;
 use super::rating::{ModelReading, Rating};
-use super::remedy::LogColumn;
 use super::search::is_doubtful_time;
 use super::trial::Effort;
 use crate::model::Model;

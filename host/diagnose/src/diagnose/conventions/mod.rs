@@ -1,28 +1,28 @@
 //! Do signs, zeros, units, angles, drives and times of a model file agree with its logs?
 //!
 //! Each doubt is a [`Correction`], a change of the model file. The given model is simulated along the
-//! logs as it reads them, and as it would read them with the remedy; a remedy counts only if it
-//! lowers the error clearly, and the errors are its proof. Samples that no remedy mends, of a
+//! logs as it reads them, and as it would read them corrected; a correction counts only if it
+//! lowers the error clearly, and the errors are its proof. Samples that no correction mends, of a
 //! joint that stands still or an input cut off at a limit, are named as rows to leave out.
 
 mod by_hand;
 mod continuous;
+mod correction;
 mod drives;
 mod findings;
-mod joint_remedies;
+mod joint_corrections;
 mod leave_out;
 mod plain_friction;
 mod rating;
-mod remedy;
 mod reread;
 mod search;
 #[cfg(test)]
 mod tests;
 mod trial;
 
+pub use correction::{Correction, LogColumn};
 pub use findings::ModelFile;
 pub use leave_out::{LeaveOut, Unusable, leave_out};
-pub use remedy::{Correction, LogColumn};
 pub use search::{LogFault, search};
 pub use trial::{Trial, scales_torque_by};
 
@@ -48,7 +48,7 @@ pub fn findings(
     Ok(findings)
 }
 
-/// What of the model file and its logs does not agree, with remedies and their proofs: lines of
+/// What of the model file and its logs does not agree, with corrections and their proofs: lines of
 /// the file to change, rows to leave out. JSON logs state their own units and are not judged.
 ///
 /// # Errors
@@ -74,7 +74,7 @@ pub fn check(requests: &[LogRequest], model: &Model, file: ModelFile) -> Result<
     let mut mended = model.clone();
     for found in search(model, &motions) {
         all.push(findings::finding(&found, &mended, file)?);
-        mended = found.trial.remedy.applied(&mended);
+        mended = found.trial.correction.applied(&mended);
     }
     let read: Vec<Motion> = motions
         .iter()

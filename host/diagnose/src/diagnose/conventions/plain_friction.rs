@@ -2,10 +2,10 @@
 //!
 //! A drive whose friction takes most of its torque moves as if its input were small: a unit that
 //! makes it small, or another drive, then lowers the error of a model without friction. Such a
-//! remedy says nothing unless it does better than friction does.
+//! correction says nothing unless it does better than friction does.
 
+use super::correction::{Correction, LogColumn};
 use super::rating::ModelReading;
-use super::remedy::{Correction, LogColumn};
 use super::trial::Effort;
 use crate::effects::EFFECTS;
 use crate::fitting::Candidate;
@@ -13,10 +13,10 @@ use crate::model::{Model, effect_on};
 use crate::motion::Motion;
 use rayon::prelude::*;
 
-/// Whether a remedy changes how strong, or of which sign, a joint's input is, or how far the joint
+/// Whether it changes how strong, or of which sign, a joint's input is, or how far the joint
 /// moves: what friction or its lack may look like.
-pub(super) fn rivals_friction(remedy: &Correction) -> Option<usize> {
-    match remedy {
+pub(super) fn rivals_friction(correction: &Correction) -> Option<usize> {
+    match correction {
         Correction::Drive(joint, ..) => Some(*joint),
         Correction::Unit(columns) => columns.iter().find_map(|(column, _)| joint_of(*column)),
         Correction::Reverse(columns) => match columns.as_slice() {

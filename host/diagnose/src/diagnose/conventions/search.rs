@@ -1,11 +1,11 @@
-//! Looks for the remedies that clearly lower the error, one after another.
+//! Looks for the corrections that clearly lower the error, one after another.
 
 use super::continuous::{LEAST_ZERO_RAD, continuous};
+use super::correction::{Correction, LogColumn, alternatives, time_units, travel_rad};
 use super::drives::drives;
 use super::leave_out::without_stalled;
 use super::plain_friction::rivals_friction;
 use super::rating::ModelReading;
-use super::remedy::{Correction, LogColumn, alternatives, time_units, travel_rad};
 use super::trial::{CorrectionTrial, Effort, Trial, scales_torque_by};
 use crate::fitting::coarsened;
 use crate::model::{Model, Unit};
@@ -13,10 +13,10 @@ use crate::motion::{Motion, excerpts};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Samples looked at with each remedy, and with each of the many values of a continuous one.
+/// Samples looked at with each correction, and with each of the many values of a continuous one.
 pub(super) const SAMPLES: usize = 6000;
 const SAMPLES_CONTINUOUS: usize = 2000;
-/// Remedies that are judged with fitted start states.
+/// Corrections that are judged with fitted start states.
 const JUDGED: usize = 6;
 /// Units of one input among them: where it hardly matters, each that makes it small does well.
 const UNITS: usize = 2;
@@ -25,12 +25,12 @@ const HOPELESS: f64 = 1.05;
 /// Faults that one log may have at once.
 const ROUNDS: usize = 3;
 
-/// A fault with its remedy, and others that do as well.
+/// A fault with its correction, and others that do as well.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogFault {
-    /// The best remedy.
+    /// The best correction.
     pub trial: Trial,
-    /// Remedies that lower the error as far.
+    /// Corrections that lower the error as far.
     pub rivals: Vec<Trial>,
 }
 
@@ -48,15 +48,15 @@ pub fn search(model: &Model, motions: &[Motion]) -> Vec<LogFault> {
         let Some(fault) = fault(&model, &judged) else {
             break;
         };
-        let remedy = &fault.trial.remedy;
-        motions = remedy.reread(&model, &motions);
-        model = remedy.applied(&model);
+        let correction = &fault.trial.correction;
+        motions = correction.reread(&model, &motions);
+        model = correction.applied(&model);
         found.push(fault);
     }
     found
 }
 
-/// The remedy that lowers the error most, if it does so clearly.
+/// The correction that lowers the error most, if it does so clearly.
 fn fault(model: &Model, motions: &[Motion]) -> Option<LogFault> {
     let doubtful = time_units(model, spacing_s(motions));
     let mut clear = if doubtful.is_empty() {
@@ -66,12 +66,12 @@ fn fault(model: &Model, motions: &[Motion]) -> Option<LogFault> {
         let few = excerpts(motions, SAMPLES_CONTINUOUS);
         let bench = CorrectionTrial::of_doubtful_time(model, few);
         let doubtful = doubtful.into_iter();
-        let trials = doubtful.filter_map(|remedy| bench.tried(remedy, Effort::Guess));
+        let trials = doubtful.filter_map(|correction| bench.tried(correction, Effort::Guess));
         trials.filter(|trial| trial.ratio() < 1.0).collect()
     };
     // Where a free number gains but little more, one of a few alternatives is likelier.
     let merit = |trial: &Trial| {
-        if trial.remedy.is_continuous() {
+        if trial.correction.is_continuous() {
             trial.after / FREE_NUMBER
         } else {
             trial.after
@@ -97,30 +97,30 @@ fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
     let model = &coarsened(model, &few.data);
     let bench = CorrectionTrial::new(model, excerpts(motions, SAMPLES));
     let few = CorrectionTrial::new(model, few.data.motions);
-    let mut remedies = alternatives(model, motions);
-    remedies.extend(drives(&few));
-    remedies.extend(continuous(&few));
-    judged(&bench, remedies)
+    let mut corrections = alternatives(model, motions);
+    corrections.extend(drives(&few));
+    corrections.extend(continuous(&few));
+    judged(&bench, corrections)
 }
 
-/// Those of the remedies that clearly lower the error.
-fn judged(bench: &CorrectionTrial, remedies: Vec<Correction>) -> Vec<Trial> {
-    let screened = remedies.into_par_iter();
+/// Those of the corrections that clearly lower the error.
+fn judged(bench: &CorrectionTrial, corrections: Vec<Correction>) -> Vec<Trial> {
+    let screened = corrections.into_par_iter();
     let mut screened: Vec<Trial> = screened
-        .filter_map(|remedy| bench.tried(remedy, Effort::Guess))
+        .filter_map(|correction| bench.tried(correction, Effort::Guess))
         .filter(|trial| trial.ratio() < HOPELESS)
         .collect();
     screened.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
     let judged = most_promising(screened).into_par_iter();
     let judged = judged.filter_map(|trial| {
         // The file's free values are a start: each reading is judged with those that suit it.
-        let refitted = bench.tried(trial.remedy.clone(), Effort::Values)?;
-        let is_another_drive = matches!(refitted.remedy, Correction::Drive(..));
+        let refitted = bench.tried(trial.correction.clone(), Effort::Values)?;
+        let is_another_drive = matches!(refitted.correction, Correction::Drive(..));
         let suits = refitted.ratio() < MOST_OF_ANOTHER_DRIVE || refitted.after < LITTLE;
-        if !least(bench, &refitted.remedy).allows(&refitted) || is_another_drive && !suits {
+        if !least(bench, &refitted.correction).allows(&refitted) || is_another_drive && !suits {
             return None;
         }
-        let given = bench.tried(trial.remedy, Effort::Starts)?;
+        let given = bench.tried(trial.correction, Effort::Starts)?;
         (given.ratio() < 1.0).then_some(refitted)
     });
     let mut judged: Vec<Trial> = judged.collect();
@@ -132,7 +132,7 @@ fn judged(bench: &CorrectionTrial, remedies: Vec<Correction>) -> Vec<Trial> {
 
 /// The first of the sorted trials, of units of one input no more than a few.
 fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
-    let units = |trial: &Trial| match &trial.remedy {
+    let units = |trial: &Trial| match &trial.correction {
         Correction::Unit(columns) => match columns.as_slice() {
             [(input @ LogColumn::Input(_), _)] => Some(*input),
             _ => None,
@@ -158,7 +158,7 @@ const LITTLE: f64 = 0.08;
 
 const BEATS: f64 = 0.999;
 
-/// Whether a remedy that only changes how strong an input is leaves less than one wrong value of
+/// Whether what only changes how strong an input is leaves less than one wrong value of
 /// the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one
 /// value leaves for the joints that were asked for. What does the same but for rounding does not
 /// beat it.
@@ -167,7 +167,7 @@ fn beats_a_wrong_value(
     trial: &Trial,
     off: &mut BTreeMap<usize, Option<f64>>,
 ) -> bool {
-    let joint = match &trial.remedy {
+    let joint = match &trial.correction {
         Correction::Drive(joint, ..) => *joint,
         Correction::Unit(columns) => match columns.as_slice() {
             [(LogColumn::Input(joint), _)] => *joint,
@@ -178,22 +178,22 @@ fn beats_a_wrong_value(
     let fitted = off
         .entry(joint)
         .or_insert_with(|| bench.with_one_value_off(joint));
-    // A fit may not get as far as the remedy does.
-    let scaled = scales_torque_by(&trial.remedy, &bench.model)
+    // A fit may not get as far as the correction does.
+    let scaled = scales_torque_by(&trial.correction, &bench.model)
         .and_then(|factor| bench.with_torques_scaled(joint, factor));
     let off = fitted.iter().copied().chain(scaled);
     let least = off.fold(f64::INFINITY, f64::min);
     trial.ratio() < BEATS * least
 }
 
-/// Whether a remedy leaves less than plain friction at its joint does, which the model may lack, and
+/// Whether it leaves less than plain friction at its joint does, which the model may lack, and
 /// less than no input at all. `rubbing` holds what they leave for the joints that were asked for.
 fn beats_friction(
     bench: &CorrectionTrial,
     trial: &Trial,
     rubbing: &mut BTreeMap<usize, Option<f64>>,
 ) -> bool {
-    let Some(joint) = rivals_friction(&trial.remedy) else {
+    let Some(joint) = rivals_friction(&trial.correction) else {
         return true;
     };
     let left = rubbing
@@ -202,13 +202,13 @@ fn beats_friction(
     left.is_none_or(|left| trial.ratio() < BEATS * left)
 }
 
-/// What a remedy must do to be believed.
+/// What a correction must do to be believed.
 struct CorrectionThreshold {
     ratio: f64,
     better: f64,
 }
 
-/// Share that a remedy may leave where it raises the error in rad.
+/// Share that a correction may leave where it raises the error in rad.
 const MOST_WHERE_LARGER: f64 = 0.15;
 
 impl CorrectionThreshold {
@@ -223,9 +223,9 @@ impl CorrectionThreshold {
     }
 }
 
-/// What this remedy must do: alternatives without a free number less than zeros and shifts, which
+/// What it must do: alternatives without a free number less than zeros and shifts, which
 /// effects of the rig (a tilt, a delay) look like.
-fn least(bench: &CorrectionTrial, remedy: &Correction) -> CorrectionThreshold {
+fn least(bench: &CorrectionTrial, correction: &Correction) -> CorrectionThreshold {
     let strict = CorrectionThreshold {
         ratio: 0.6,
         better: 0.75,
@@ -234,7 +234,7 @@ fn least(bench: &CorrectionTrial, remedy: &Correction) -> CorrectionThreshold {
         ratio: 0.0,
         better: 1.0,
     };
-    match remedy {
+    match correction {
         Correction::Offset(quantity, offset) => {
             let given = quantity
                 .column(&bench.model)
@@ -254,7 +254,7 @@ fn least(bench: &CorrectionTrial, remedy: &Correction) -> CorrectionThreshold {
                 never
             }
         }
-        Correction::Unit(columns) if stands_still(bench, remedy, columns) => never,
+        Correction::Unit(columns) if stands_still(bench, correction, columns) => never,
         // Many turns of an arm are reason enough to doubt a unit.
         Correction::Unit(columns) if doubts_travel(bench, columns) => CorrectionThreshold {
             ratio: 0.97,
@@ -274,13 +274,13 @@ const DOUBTFUL_RAD: f64 = 30.0;
 /// linear near its rest predicts so small a motion.
 const STILL_RAD: f64 = 0.1;
 
-/// Whether one of the columns is an angle that hardly moves as the remedy reads it.
+/// Whether one of the columns is an angle that hardly moves as the correction reads it.
 fn stands_still(
     bench: &CorrectionTrial,
-    remedy: &Correction,
+    correction: &Correction,
     columns: &[(LogColumn, Unit)],
 ) -> bool {
-    let motions = remedy.reread(&bench.model, &bench.motions);
+    let motions = correction.reread(&bench.model, &bench.motions);
     columns.iter().any(|(quantity, _)| match quantity {
         LogColumn::Position(joint) => travel_rad(&motions, *joint) < STILL_RAD,
         _ => false,

@@ -1,4 +1,4 @@
-//! A spoiled log is found with its remedy, and a good one is left alone.
+//! A spoiled log is found with its correction, and a good one is left alone.
 
 use super::*;
 use crate::challenge::{Motions, bench};

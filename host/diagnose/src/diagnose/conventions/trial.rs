@@ -1,8 +1,8 @@
-//! A remedy tried: the error with it and without.
+//! A correction tried: the error with it and without.
 
+use super::correction::{Correction, LogColumn};
 use super::plain_friction::left_by_friction;
 use super::rating::{ModelReading, Rating};
-use super::remedy::{Correction, LogColumn};
 use crate::diagnose::values::values_of;
 use crate::effects::TorqueScale;
 use crate::fitting::Candidate;
@@ -10,21 +10,21 @@ use crate::model::{Drive, Model, ParameterPath, Unit};
 use crate::motion::Motion;
 use rayon::prelude::*;
 
-/// A remedy with its proof: the errors before and after it, on the same windows.
+/// A correction with its proof: the errors before and after it, on the same windows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
     /// The change.
-    pub remedy: Correction,
+    pub correction: Correction,
     /// Share of the motion that the model leaves unexplained as it is: 0 nothing, 1 as much as
     /// going on at constant speed does.
     pub before: f64,
-    /// The same with the remedy.
+    /// The same with the correction.
     pub after: f64,
     /// Root-mean-square error as it is, rad.
     pub before_rad: f64,
-    /// The same with the remedy, rad.
+    /// The same with the correction, rad.
     pub after_rad: f64,
-    /// Share of the windows that the remedy makes better, of those it changes.
+    /// Share of the windows that the correction makes better, of those it changes.
     pub better: f64,
 }
 
@@ -34,7 +34,7 @@ impl Trial {
         self.after / self.before.max(1e-12)
     }
 
-    fn new(remedy: Correction, before: &Rating, after: &Rating) -> Option<Trial> {
+    fn new(correction: Correction, before: &Rating, after: &Rating) -> Option<Trial> {
         let (mut better, mut changed) = (0.0, 0.0);
         for (before, after) in before.shares.iter().zip(&after.shares) {
             let square = |shares: &[f64]| shares.iter().map(|s| s * s).sum::<f64>();
@@ -45,7 +45,7 @@ impl Trial {
             }
         }
         Some(Trial {
-            remedy,
+            correction,
             before: before.share()?,
             after: after.share()?,
             before_rad: before.rms_rad,
@@ -55,17 +55,17 @@ impl Trial {
     }
 }
 
-/// A remedy that leaves so many times the error, on the windows of the model as it is, is not rated
+/// What leaves so many times the error, on the windows of the model as it is, is not rated
 /// on shorter ones: how errors grow in its reading takes most of a trial.
 const FAR_WORSE: f64 = 5.0;
 
 /// A value of the file may be wrong by this factor; a unit is wrong by more.
 const PLAUSIBLE: f64 = 3.0;
 
-/// The factor by which a remedy multiplies a joint's torques, where that is all it does but for
+/// The factor by which a correction multiplies a joint's torques, where that is all it does but for
 /// the supply, and a stall torque may be off by as much; else none.
-pub fn scales_torque_by(remedy: &Correction, model: &Model) -> Option<f64> {
-    let (joint, drive, unit) = match remedy {
+pub fn scales_torque_by(correction: &Correction, model: &Model) -> Option<f64> {
+    let (joint, drive, unit) = match correction {
         Correction::Drive(joint, drive, unit) => (*joint, drive, unit),
         Correction::Unit(columns) => match columns.as_slice() {
             [(LogColumn::Input(joint), unit)] => (*joint, &model.joints[*joint].drive, unit),
@@ -105,7 +105,7 @@ pub(super) enum Effort {
     ValuesToTheEnd,
 }
 
-/// Tries remedies on a model and its motions.
+/// Tries corrections on a model and its motions.
 pub(super) struct CorrectionTrial {
     pub model: Model,
     pub motions: Vec<Motion>,
@@ -131,7 +131,7 @@ impl CorrectionTrial {
     }
 
     /// For times so far apart that the model cannot be run over them for long: as it reads them,
-    /// it is rated on the windows of the remedy.
+    /// it is rated on the windows of the correction.
     pub fn of_doubtful_time(model: &Model, motions: Vec<Motion>) -> CorrectionTrial {
         CorrectionTrial {
             model: model.clone(),
@@ -140,33 +140,33 @@ impl CorrectionTrial {
         }
     }
 
-    /// The remedy's effect, on windows in which start errors grow in neither reading.
-    pub fn tried(&self, remedy: Correction, effort: Effort) -> Option<Trial> {
-        let motions = remedy.reread(&self.model, &self.motions);
-        let model = remedy.applied(&self.model);
+    /// The correction's effect, on windows in which start errors grow in neither reading.
+    pub fn tried(&self, correction: Correction, effort: Effort) -> Option<Trial> {
+        let motions = correction.reread(&self.model, &self.motions);
+        let model = correction.applied(&self.model);
         let Some(ModelRating { reading, rating }) = &self.given else {
             let after = ModelReading::new(model, motions);
             let before = after.read_as(&self.model, self.motions.clone());
-            return Trial::new(remedy, &before.rated(effort), &after.rated(effort));
+            return Trial::new(correction, &before.rated(effort), &after.rated(effort));
         };
         // A shift shortens the motions and leaves how errors grow in them; nothing else does.
-        if matches!(remedy, Correction::Shift(..)) {
+        if matches!(correction, Correction::Shift(..)) {
             let shortened = self.shortened_as(reading, &motions);
             let after = reading.growing_like(model, motions);
             let [before, after] = rated_alike([&shortened, &after], effort);
-            return Trial::new(remedy, &before, &after);
+            return Trial::new(correction, &before, &after);
         }
         if effort == Effort::Guess {
             let cut_as_given = reading.growing_like(model.clone(), motions.clone());
             let cut_as_given = cut_as_given.cut_as(&reading.data.windows).rated(effort);
-            let trial = Trial::new(remedy.clone(), rating, &cut_as_given);
+            let trial = Trial::new(correction.clone(), rating, &cut_as_given);
             if trial.as_ref().is_some_and(|t| t.ratio() > FAR_WORSE) {
                 return trial;
             }
         }
         let after = ModelReading::new(model, motions);
         let [before, after] = rated_alike([reading, &after], effort);
-        Trial::new(remedy, &before, &after)
+        Trial::new(correction, &before, &after)
     }
 
     /// Error with one value of the file, or the torques of a joint, off by what explains the
@@ -194,7 +194,7 @@ impl CorrectionTrial {
     }
 
     /// Error with a joint's torques multiplied by a factor over the error without, on windows as a
-    /// remedy has them.
+    /// correction has them.
     pub fn with_torques_scaled(&self, joint: usize, factor: f64) -> Option<f64> {
         let reading = &self.given.as_ref()?.reading;
         let mut scaled = self.model.clone();
@@ -273,16 +273,16 @@ mod tests {
     /// the one on the windows that suit both readings.
     fn upside_down(seed: u64) -> (Trial, f64, f64) {
         let (model, training, _) = arm(seed, &["viscous"]);
-        let remedy = Correction::AngleZero(match model.angle_zero {
+        let correction = Correction::AngleZero(match model.angle_zero {
             AngleZero::Upright => AngleZero::Hanging,
             _ => AngleZero::Upright,
         });
-        let after = ModelReading::new(remedy.applied(&model), training.clone());
+        let after = ModelReading::new(correction.applied(&model), training.clone());
         let trial = CorrectionTrial::new(&model, training);
         let given = trial.given.as_ref().unwrap();
         let [on_common, _] = rated_alike([&given.reading, &after], Effort::Guess);
         let (as_is, on_common) = (given.rating.share(), on_common.share());
-        let tried = trial.tried(remedy, Effort::Guess).unwrap();
+        let tried = trial.tried(correction, Effort::Guess).unwrap();
         (tried, as_is.unwrap(), on_common.unwrap())
     }
 

@@ -1,9 +1,9 @@
 use super::*;
 
 #[test]
-fn units_of_one_input_do_not_crowd_out_other_remedies() {
-    let tried = |remedy| Trial {
-        remedy,
+fn units_of_one_input_do_not_crowd_out_other_corrections() {
+    let tried = |correction| Trial {
+        correction,
         before: 1.0,
         after: 0.5,
         before_rad: 1.0,

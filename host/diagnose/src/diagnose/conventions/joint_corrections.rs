@@ -1,6 +1,6 @@
 //! What may be wrong with how a model reads the motion of one joint.
 
-use super::remedy::{Correction, LogColumn, other_units, travel_rad};
+use super::correction::{Correction, LogColumn, other_units, travel_rad};
 use crate::model::{Model, Unit};
 use crate::motion::Motion;
 use std::f64::consts::PI;

@@ -1,6 +1,6 @@
 //! What may be wrong between a model file and its logs, each as the change that mends it.
 
-use super::joint_remedies::{of_motion, of_speed};
+use super::joint_corrections::{of_motion, of_speed};
 use super::reread::{reread, written};
 use crate::log::init::name_guess;
 use crate::model::{
@@ -264,7 +264,7 @@ mod tests {
         let mut model = model(position_drive(), columns());
         model.log.time.unit = Unit::named(declared, None).unwrap();
         let units = time_units(&model, spacing_s).into_iter();
-        let units = units.filter_map(|remedy| match remedy {
+        let units = units.filter_map(|correction| match correction {
             Correction::Unit(columns) => Some(columns[0].1.name),
             _ => None,
         });
