@@ -39,6 +39,8 @@ fn gains_are_uploaded_read_back_verified_and_replayed() {
     for (option, code, said) in [
         ("--dead-zone 1.5", 2, "--dead-zone"),
         ("--slew 0", 2, "--slew"),
+        ("--fallen 9", 2, "give 0 to 6.55"),
+        ("--gyro-per-code 1000", 2, "give -2.05 to 2.05"),
         ("--joints 1+2", 2, "--joints names 1"),
         ("--joints 300/11", 2, "--joints"),
         ("--q 10", 2, "--law state"),
