@@ -8,7 +8,7 @@ use crate::fault_log::FaultLog;
 use crate::filter::{Filter, Way};
 use crate::link::Link;
 use crate::panel::Buttons;
-use crate::plan_store::Writer;
+use crate::plan_store::{Stored, Writer};
 use crate::servos::Servos;
 use crate::{boot_counter, bus};
 use handstand_shared::message::{Attitude, Cause, Condition, ServoList, Statistics};
@@ -260,13 +260,25 @@ impl App {
     #[inline(never)]
     fn load_plan<B: Board>(&mut self, board: &mut B) {
         let stored = self.writer.newest();
-        let is_loaded = stored.is_some_and(|stored| self.balance.load(stored.bytes(board)));
-        self.is_stored = is_loaded;
-        if !is_loaded {
-            self.balance
-                .load((0..).map_while(|at| board.compiled_plan(at)));
+        self.is_stored = stored.is_some() && self.take_plan(board, stored);
+        if !self.is_stored {
+            self.take_plan(board, None);
         }
         self.order_servos();
+    }
+
+    /// The stored plan, or the one compiled in; whether it can be used.
+    // One function for both, for taking a plan from its bytes is 12 KiB of code.
+    #[inline(never)]
+    fn take_plan<B: Board>(&mut self, board: &mut B, stored: Option<Stored>) -> bool {
+        let mut places = 0..;
+        self.balance.load(core::iter::from_fn(|| {
+            let at = places.next()?;
+            match &stored {
+                Some(stored) => stored.byte(board, at),
+                None => board.compiled_plan(at),
+            }
+        }))
     }
 
     /// Those that balance are read last: what is read then is the newest.

@@ -46,10 +46,11 @@ impl Stored {
         }
     }
 
-    /// The table's bytes. Torque must be off: reading them feeds the watchdog.
-    pub fn bytes<B: Board>(self, board: &mut B) -> impl Iterator<Item = u8> {
-        let body = start(self.slot) + HEADER;
-        (body..body + self.length).map(|at| read_fed(board, at))
+    /// The table's byte at this place; none behind its end. Torque must be off: reading all of them
+    /// feeds the watchdog.
+    pub fn byte<B: Board>(&self, board: &mut B, at: u16) -> Option<u8> {
+        let address = start(self.slot) + HEADER + at;
+        (at < self.length).then(|| read_fed(board, address))
     }
 
     /// The table's bytes from `offset` on, as many as `out` holds; beyond its end zeros.

@@ -77,7 +77,8 @@ fn holding(slots: [Option<&[u8]>; 2]) -> HostBoard {
 
 /// The table that counts.
 fn newest(board: &mut HostBoard) -> Option<Vec<u8>> {
-    Stored::newest(board).map(|stored| stored.bytes(board).collect())
+    let stored = Stored::newest(board)?;
+    Some((0..).map_while(|at| stored.byte(board, at)).collect())
 }
 
 #[test]

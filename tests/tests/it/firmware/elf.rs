@@ -17,6 +17,7 @@ use handstand_tests::firmware::{Built, Toolchain, build, find_built};
 use rand::Rng as _;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
+use std::path::Path;
 
 /// The last build of `cargo xtask firmware`.
 ///
@@ -138,6 +139,12 @@ fn the_elf_balances_by_the_plan_compiled_in() {
     let file = folder.path().join("plan.rs");
     std::fs::write(&file, plan_file(&plan, "a test")).unwrap();
     let with_plan = build(&toolchain, Some(&file)).unwrap();
+    // The plan alone is added, and not the code that takes one from its bytes once more.
+    let size = |file: &Path| std::fs::metadata(file).unwrap().len();
+    let mut table = 0;
+    plan.bytes(|_| table += 1);
+    let (plain, longer) = (size(&built().bin), size(&with_plan.bin));
+    assert!(longer <= plain + table + 1024, "{longer} and {plain} bytes");
     let mut rig = ElfCm5::new(&with_plan.elf).unwrap();
     it_stands(&mut rig, 5.0);
     // Nothing was uploaded: beside the fault log one byte of EEPROM is written, the counter of

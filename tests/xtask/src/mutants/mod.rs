@@ -93,14 +93,14 @@ fn of_list(args: &Args) -> Result<Listed, String> {
 struct Made {
     caught: usize,
     missed: Vec<String>,
-    timeout: usize,
+    timeout: Vec<String>,
     unviable: usize,
 }
 
 impl Made {
     /// Share of the viable ones that were caught; one that runs for ever is noticed, too.
     fn share(&self) -> f64 {
-        let noticed = self.caught + self.timeout;
+        let noticed = self.caught + self.timeout.len();
         noticed as f64 / (noticed + self.missed.len()).max(1) as f64
     }
 }
@@ -203,7 +203,7 @@ fn outcomes(file: &Path) -> Result<Made, String> {
     Ok(Made {
         caught: of("CaughtMutant").len(),
         missed: of("MissedMutant"),
-        timeout: of("Timeout").len(),
+        timeout: of("Timeout"),
         unviable: of("Unviable").len(),
     })
 }
@@ -234,12 +234,16 @@ fn show(args: &Args, listed: &Listed, made: Option<&Made>, took: Duration) {
         made.missed
             .iter()
             .for_each(|name| println!("missed: {name}"));
+        // A busy machine is slow, too: who doubts it tries these again.
+        made.timeout
+            .iter()
+            .for_each(|name| println!("took too long: {name}"));
         println!(
             "cargo-mutants: {} caught, {} missed, {} timeouts, {} not viable; {:.1} % caught, at \
              least {:.0} % wanted",
             made.caught,
             made.missed.len(),
-            made.timeout,
+            made.timeout.len(),
             made.unviable,
             100.0 * made.share(),
             100.0 * CAUGHT

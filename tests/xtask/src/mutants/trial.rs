@@ -108,6 +108,10 @@ impl Copy {
                     "handstand-firmware",
                     "-p",
                     "handstand-cm5-sim",
+                    "--tests",
+                    "--",
+                    "--skip",
+                    "invariant",
                 ],
             ],
             Bench::Elf => &[
