@@ -129,10 +129,10 @@ impl Relations {
         };
         let mut x = Vec::with_capacity(5 * n + 1);
         let mut absolute = self.zero.from_hanging_rad();
-        for i in 0..n {
+        for (i, angle) in angles.into_iter().enumerate() {
             absolute = match self.angles {
-                Angles::Relative => absolute + angles[i],
-                Angles::Absolute => self.zero.from_hanging_rad() + angles[i],
+                Angles::Relative => absolute + angle,
+                Angles::Absolute => self.zero.from_hanging_rad() + angle,
             };
             let speed = relative(&speeds, i);
             let input = match self.drives[i] {
