@@ -10,6 +10,8 @@ use super::read::LEAST_ROWS;
 use super::reading_limit::LARGEST_READING;
 use super::reason::LogReason;
 use super::request::LogRequest;
+use super::row::LogRow;
+use super::visit::FileFacts;
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
 use crate::motion::{Motion, MotionSource};
@@ -52,27 +54,46 @@ impl BenchFigures {
     }
 }
 
-/// Reads the log, or the entries asked for, as one motion.
+/// Hands the entries asked for over one by one, as rows, with their number counted from 0.
 ///
 /// Where `columns` name a payload, each log's own weight is it, and the model's one link is the rod;
 /// else the link is both. `kp` must be that of the logs before. Speed, supply and `torque_enable`
-/// are taken where every entry has them. `source.lines` holds entries, counted from 1.
+/// are taken where every entry has them. A row's line is its entry, counted from 1.
 ///
 /// # Errors
-/// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that
-/// does not increase; fewer than [`LEAST_ROWS`] entries; mass, length or gain of another rig.
-pub(super) fn read(
+/// What the visitor returns. Broken JSON with its line and column; a missing or wrong value with
+/// its entry and key; time that does not increase; fewer than [`LEAST_ROWS`] entries; mass, length
+/// or gain of another rig; a model of several joints.
+pub(super) fn visit(
     request: &LogRequest,
     columns: &LogColumns,
     bench: &mut BamBench,
-) -> Result<Motion> {
-    Ok(read_of(request, Some(columns), bench)?.0)
+    visitor: &mut dyn FnMut(usize, Result<&LogRow>) -> Result<()>,
+) -> Result<FileFacts> {
+    let (motion, _) = read_of(request, Some(columns), bench)?;
+    let joints = columns.joints.len();
+    if joints != 1 {
+        return Err(Error::data(
+            Place::file(&request.path),
+            format!("a log of BAM is of one joint, the model of {joints}"),
+            "give it with the model of its bench's arm",
+        ));
+    }
+    let (first, last) = motion.source.lines;
+    for index in 0..motion.len() {
+        visitor(first - 1 + index, Ok(&LogRow::of(&motion, index)))?;
+    }
+    Ok(FileFacts {
+        sha256: motion.source.sha256,
+        rows: last,
+        warning: None,
+    })
 }
 
 /// Reads a log without a model, and what it says of its bench.
 ///
 /// # Errors
-/// As [`read`].
+/// As [`visit`].
 pub(super) fn read_alone(request: &LogRequest) -> Result<(Motion, Option<BenchFigures>)> {
     read_of(request, None, &mut BamBench::default())
 }

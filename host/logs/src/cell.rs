@@ -1,27 +1,8 @@
 //! What a cell of a text log says: a number, or that there is none.
 
 /// Words for a value that is not there, in lower case: of R, SQL, Python, Excel, Julia, C.
-const MISSING: [&str; 19] = [
-    "nan",
-    "na",
-    "n/a",
-    "#n/a",
-    "#na",
-    "null",
-    "none",
-    "nil",
-    "missing",
-    "nat",
-    "-nan(ind)",
-    "nan(ind)",
-    "1.#qnan",
-    "1.#ind",
-    "<na>",
-    "undefined",
-    "#div/0!",
-    "#value!",
-    "#num!",
-];
+const MISSING: &str = "nan na n/a #n/a #na null none nil missing nat -nan(ind) nan(ind) 1.#qnan 1.#ind <na> \
+    undefined #div/0! #value! #num!";
 
 /// Signs that stand where a value is missing.
 const DASHES: [&str; 4] = ["-", "--", "---", "\u{2013}"];
@@ -35,7 +16,7 @@ pub(super) fn is_missing(text: &str) -> bool {
         // Microsoft's C writes a number that is none as 1.#QNAN.
         || ((!is_number || text.contains('#'))
             && MISSING
-                .iter()
+                .split(' ')
                 .any(|word| plain.eq_ignore_ascii_case(word) || text.eq_ignore_ascii_case(word)))
 }
 

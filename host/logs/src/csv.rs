@@ -33,10 +33,9 @@ pub(super) fn visit(
     let mut rows = 0;
     let mut give = |text: &str, at: usize| {
         row.line = at;
-        row.number = rows;
-        rows += 1;
         let filled = reader.fill(text, at, &mut row);
-        visitor(row.number, filled.map(|()| &row))
+        rows += 1;
+        visitor(rows - 1, filled.map(|()| &row))
     };
     if let Some(text) = first {
         give(&text, lines.number)?;

@@ -1,5 +1,7 @@
 //! Time stamps as ISO 8601 writes them: `2026-03-01T12:00:00.123456789+01:00`.
 
+use chrono::{FixedOffset, NaiveDateTime, NaiveTime, TimeDelta};
+
 /// Nanoseconds since 1970-01-01T00:00:00Z, or since midnight of a time of day without a date; none
 /// of a text that is no such stamp.
 ///
@@ -17,110 +19,69 @@ pub(super) fn iso_ns(text: &str) -> Option<i64> {
         return Some(ns);
     }
     let (date, rest) = text.split_once(['T', 't', ' '])?;
-    let date = match date.contains('-') {
-        true => date.into(),
-        false => date.replace('/', "-"),
-    };
-    let mut parts = date.split('-');
-    let (year, month, day) = (
-        digits(parts.next()?, 4)?,
-        digits(parts.next()?, 2)?,
-        digits(parts.next()?, 2)?,
-    );
     let rest = rest.trim_start();
     let zone = rest.find(['Z', 'z', '+', '-']).unwrap_or(rest.len());
     let (clock, zone) = rest.split_at(zone);
-    let mut clock = clock.trim_end().splitn(3, ':');
-    let (hour, minute) = (digits(clock.next()?, 2)?, digits(clock.next()?, 2)?);
-    let (second, nanosecond) = match clock.next() {
-        None => (0, 0),
-        Some(text) => match text.split_once(['.', ',']) {
-            None => (digits(text, 2)?, 0),
-            Some((whole, fraction)) => (digits(whole, 2)?, nanoseconds(fraction)?),
-        },
+    let clock = clock.trim_end();
+    let clock = match has_shape(clock, "00:00") {
+        true => format!("{clock}:00"),
+        false => plain_clock(clock)?,
     };
-    let fits = parts.next().is_none()
-        && (1..=12).contains(&month)
-        && (1..=days_in(year, month)).contains(&day)
-        && hour < 24
-        && minute < 60
-        && second <= 60;
-    let seconds = (days_since_1970(year, month, day) * 24 + hour) * 3600 + minute * 60 + second;
-    let seconds = fits.then_some(seconds - offset_s(zone)?)?;
-    seconds.checked_mul(1_000_000_000)?.checked_add(nanosecond)
+    let date = date.replace('/', "-");
+    if !has_shape(&date, "0000-00-00") {
+        return None;
+    }
+    let stamp = NaiveDateTime::parse_from_str(&format!("{date}T{clock}"), "%FT%T%.f").ok()?;
+    let offset = match zone {
+        "" | "Z" | "z" => 0,
+        zone => offset_s(zone)?,
+    };
+    let utc = stamp.checked_sub_offset(FixedOffset::east_opt(offset)?)?;
+    utc.and_utc().timestamp_nanos_opt()
 }
 
 /// `12:00:00.25`, `0:00:01`, `1 days 00:00:00.01`.
 fn day_ns(text: &str) -> Option<i64> {
-    let (days, clock) = match text
+    let days = text
         .split_once(" days ")
-        .or_else(|| text.split_once(" day, "))
-    {
+        .or_else(|| text.split_once(" day, "));
+    let (days, clock) = match days {
         Some((days, clock)) => (days.parse::<i32>().ok()?, clock),
         None => (0, text),
     };
-    let (hour, rest) = clock.split_once(':')?;
-    let (minute, second) = rest.split_once(':')?;
-    let (second, fraction) = second.split_once(['.', ',']).unwrap_or((second, "0"));
-    let hour = digits(hour, 2).or_else(|| digits(hour, 1))?;
-    let (minute, second) = (digits(minute, 2)?, digits(second, 2)?);
-    let fits = hour < 24 && minute < 60 && second <= 60;
-    let seconds = ((i64::from(days) * 24 + hour) * 60 + minute) * 60 + second;
-    fits.then(|| {
-        seconds
-            .checked_mul(1_000_000_000)?
-            .checked_add(nanoseconds(fraction)?)
-    })?
-}
-
-/// A number of exactly so many digits.
-fn digits(text: &str, count: usize) -> Option<i64> {
-    let plain = text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());
-    plain.then(|| text.parse().ok()).flatten()
-}
-
-fn nanoseconds(fraction: &str) -> Option<i64> {
-    let plain = !fraction.is_empty() && fraction.bytes().all(|byte| byte.is_ascii_digit());
-    plain
-        .then(|| format!("{:0<9.9}", fraction).parse().ok())
-        .flatten()
-}
-
-/// Seconds east of UTC: `Z`, `+01:00`, `+0100`, `+01`.
-fn offset_s(zone: &str) -> Option<i64> {
-    let sign = match zone.chars().next() {
-        None => return Some(0),
-        Some('Z' | 'z') => return (zone.len() == 1).then_some(0),
-        Some('-') => -1,
-        Some(_) => 1,
+    let clock = match clock.find(':') {
+        Some(1) => format!("0{clock}"),
+        _ => clock.to_string(),
     };
-    let plain = zone[1..].replacen(':', "", 1);
-    let (hours, minutes) = match plain.len() {
-        2 => (digits(&plain, 2)?, 0),
-        4 => (digits(plain.get(..2)?, 2)?, digits(plain.get(2..)?, 2)?),
-        _ => return None,
-    };
-    Some(sign * (hours * 3600 + minutes * 60))
+    let clock = NaiveTime::parse_from_str(&plain_clock(&clock)?, "%T%.f").ok()?;
+    let of_day = clock - NaiveTime::MIN;
+    (TimeDelta::days(days.into()) + of_day).num_nanoseconds()
 }
 
-fn days_in(year: i64, month: i64) -> i64 {
-    match month {
-        2 if (year % 4 == 0 && year % 100 != 0) || year % 400 == 0 => 29,
-        2 => 28,
-        4 | 6 | 9 | 11 => 30,
-        _ => 31,
-    }
+/// A time of day with seconds, its fraction of at most nine digits behind a point.
+fn plain_clock(clock: &str) -> Option<String> {
+    let (whole, fraction) = clock.split_once(['.', ',']).unwrap_or((clock, "0"));
+    let digits = !fraction.is_empty() && fraction.bytes().all(|byte| byte.is_ascii_digit());
+    let fits = digits && has_shape(whole, "00:00:00");
+    fits.then(|| format!("{whole}.{fraction:.9}"))
 }
 
-/// Days of the Gregorian calendar; years begin in March, so that a leap day ends one.
-fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
-    let (year, month) = match month {
-        ..=2 => (year - 1, month + 9),
-        _ => (year, month - 3),
+/// Seconds east of UTC: `+01:00`, `+0100`, `+01`.
+fn offset_s(zone: &str) -> Option<i32> {
+    let hours = if zone.len() == 3 { ":00" } else { "" };
+    let zone = format!("{zone}{hours}");
+    let fits = has_shape(&zone[1..], "00:00") || has_shape(&zone[1..], "0000");
+    let offset = zone.parse::<FixedOffset>().ok().filter(|_| fits)?;
+    Some(offset.local_minus_utc())
+}
+
+/// Whether a text is as long as a shape, with digits where that has zeros.
+fn has_shape(text: &str, shape: &str) -> bool {
+    let alike = |(own, wanted): (u8, u8)| match wanted {
+        b'0' => own.is_ascii_digit(),
+        sign => own == sign,
     };
-    let leap_days = year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400);
-    let in_year = (153 * month + 2) / 5 + day - 1;
-    365 * year + leap_days + in_year - 719_468
+    text.len() == shape.len() && text.bytes().zip(shape.bytes()).all(alike)
 }
 
 #[cfg(test)]

@@ -285,6 +285,26 @@ pub enum LogReason {
 
 use LogReason::*;
 
+impl LogReason {
+    /// A column that holds no value throughout a motion.
+    pub(super) fn empty(column: String, motion: &str) -> LogReason {
+        EmptyColumn {
+            column,
+            motion: motion.to_string(),
+        }
+    }
+
+    /// The kind of finding that a row makes which cannot follow the one before.
+    pub(super) fn kind(&self) -> &'static str {
+        match self {
+            TimeNotIncreasing { .. } => "time",
+            TimeJumps { .. } => "jump",
+            PayloadChanges { .. } => "payload",
+            _ => "turned",
+        }
+    }
+}
+
 impl Reason for LogReason {
     fn remedy(&self) -> Cow<'_, str> {
         Cow::Borrowed(match self {

@@ -2,7 +2,7 @@
 
 use super::reason::LogReason;
 use crate::error::Place;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Longest gap within a motion, s; over a longer one no simulation says anything, and it would take
 /// ages.
@@ -23,15 +23,23 @@ pub struct Fields {
     pub input: Vec<usize>,
 }
 
+impl Fields {
+    /// The place of a field in a line, both counted from 1; entries of a JSON log have none.
+    pub fn place(&self, path: &Path, line: usize, field: usize) -> Place {
+        match self.time {
+            0 => Place::file(path),
+            _ => Place::at(path, line, field.max(1)),
+        }
+    }
+}
+
 /// One sample.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LogRow {
     /// The file.
     pub path: PathBuf,
-    /// Line in the file, counted from 1; 0 in a JSON log.
+    /// Line in the file, counted from 1; of a JSON log the entry.
     pub line: usize,
-    /// Data row, counted from 0.
-    pub number: usize,
     /// Where its quantities stand.
     pub fields: Fields,
     /// Time, s.
@@ -66,42 +74,28 @@ pub(super) struct Before<'a> {
 }
 
 impl LogRow {
-    /// This row as the one before the next.
-    pub(super) fn before(&self) -> Before<'_> {
-        Before {
-            segment: self.segment.as_deref(),
-            time_s: self.time_s,
-            payload_kg: self.payload_kg,
-            turned: self.turned,
-        }
-    }
-
     /// Sample `index` of a motion that came from no CSV.
     pub(super) fn of(motion: &crate::motion::Motion, index: usize) -> LogRow {
-        let joints = motion.position_rad.len();
         let at = |series: &Option<Vec<f64>>| series.as_ref().map(|values| values[index]);
+        let joints = motion.position_rad.len();
         LogRow {
             path: motion.source.path.clone(),
-            number: index,
+            line: motion.source.lines.0 + index,
             fields: Fields {
                 position: vec![0; joints],
                 input: vec![0; joints],
                 ..Fields::default()
             },
             time_s: motion.time_s[index],
-            position_rad: motion
-                .position_rad
-                .iter()
-                .map(|values| values[index])
-                .collect(),
+            segment: None,
+            position_rad: motion.position_rad.iter().map(|q| q[index]).collect(),
             velocity_rad_s: motion.velocity_rad_s.iter().map(at).collect(),
-            rate_rad_s: vec![None; joints],
+            rate_rad_s: motion.rate_rad_s.iter().map(at).collect(),
             input: motion.input.iter().map(at).collect(),
             supply_v: at(&motion.supply_v),
             torque_on: motion.torque_on.as_ref().map(|values| values[index]),
             payload_kg: motion.payload_kg,
             turned: motion.turned,
-            ..LogRow::default()
         }
     }
 
@@ -143,9 +137,6 @@ impl LogRow {
 
     /// The place of a field of this row, counted from 1.
     pub fn place(&self, field: usize) -> Place {
-        match self.line {
-            0 => Place::file(&self.path),
-            line => Place::at(&self.path, line, field.max(1)),
-        }
+        self.fields.place(&self.path, self.line, field)
     }
 }

@@ -30,6 +30,11 @@ impl ShortMotions {
         self.rows = Some((fewest.min(rows), most.max(rows)));
     }
 
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.motions == 0
+    }
+
     /// Why a file is refused of which nothing else is left, if there is such a motion.
     pub fn refusal(&self, path: &Path) -> Option<(Place, LogReason)> {
         let (line, _, rows) = *self.named.first()?;
@@ -86,52 +91,6 @@ impl ShortMotions {
     }
 }
 
-/// How many rows of a motion are left once its columns are moved in time, where they are fewer than
-/// [`LEAST_ROWS`]: of a long motion only so many times are kept.
-#[derive(Debug)]
-pub(super) struct RowsLeft {
-    /// By how much the earliest and the latest column is moved, s; at most 0, at least 0.
-    ends_s: (f64, f64),
-    lines: Option<(usize, usize)>,
-    from_s: f64,
-    last_s: f64,
-    first_s: Vec<f64>,
-}
-
-impl RowsLeft {
-    /// Of a motion that has not begun.
-    pub fn new(ends_s: (f64, f64)) -> Self {
-        RowsLeft {
-            ends_s,
-            lines: None,
-            from_s: 0.0,
-            last_s: 0.0,
-            first_s: Vec::new(),
-        }
-    }
-
-    /// Takes the motion's next row.
-    pub fn take(&mut self, line: usize, time_s: f64) {
-        if self.lines.is_none() {
-            self.from_s = time_s + self.ends_s.1;
-        }
-        self.lines = Some((self.lines.map_or(line, |(first, _)| first), line));
-        self.last_s = time_s;
-        if time_s >= self.from_s && self.first_s.len() < LEAST_ROWS {
-            self.first_s.push(time_s);
-        }
-    }
-
-    /// Ends the motion, if one had begun: its lines, and its rows up to [`LEAST_ROWS`].
-    pub fn close(&mut self) -> Option<((usize, usize), usize)> {
-        let to_s = self.last_s + self.ends_s.0;
-        let left = self.first_s.iter().filter(|time_s| **time_s <= to_s);
-        let rows = left.count();
-        self.first_s.clear();
-        Some((self.lines.take()?, rows))
-    }
-}
-
 fn at(path: &Path, line: usize) -> Place {
     Place {
         line: Some(line),
@@ -149,20 +108,6 @@ mod tests {
             .iter()
             .for_each(|(lines, rows)| short.take(*lines, *rows));
         short.warning(Path::new("a.csv")).unwrap().statement()
-    }
-
-    #[test]
-    fn rows_without_a_moved_column_are_not_left() {
-        let left = |ends_s, rows: u32| {
-            let mut left = RowsLeft::new(ends_s);
-            (0..rows).for_each(|k| left.take(k as usize + 2, 0.01 * f64::from(k)));
-            left.close()
-        };
-        assert_eq!(left((0.0, 0.0), 0), None);
-        assert_eq!(left((0.0, 0.0), 9), Some(((2, 10), 9)));
-        assert_eq!(left((0.0, 0.0), 500), Some(((2, 501), LEAST_ROWS)));
-        assert_eq!(left((-0.025, 0.015), 13), Some(((2, 14), 8)));
-        assert_eq!(left((-0.025, 0.015), 15), Some(((2, 16), LEAST_ROWS)));
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use super::extremes::Extremes;
 use super::finding::Findings;
+use crate::cut::is_energised;
 use crate::error::Place;
 use crate::model::{ColumnMean, JointColumns, Model};
-use crate::row::LogRow;
+use crate::motion::Motion;
 
 /// Least swing that counts as a reversal where the encoder is fine, rad.
 const SWING_RAD: f64 = 0.02;
@@ -72,18 +73,19 @@ impl ExcitationCheck {
         }
     }
 
-    pub fn take(&mut self, row: &LogRow, fresh: bool) {
-        self.motions += usize::from(fresh);
+    pub fn take(&mut self, motion: &Motion) {
+        self.motions += 1;
         for (i, joint) in self.joints.iter_mut().enumerate() {
-            if fresh {
-                joint.now = None;
+            joint.now = None;
+            for (k, input) in motion.input[i].iter().flatten().enumerate() {
+                if is_energised(motion, k) {
+                    joint.input.take(*input);
+                }
             }
-            let energised = row.torque_on != Some(false);
-            if let Some(input) = row.input[i].filter(|_| energised) {
-                joint.input.take(input);
-            }
-            if row.position_rad[i].is_finite() {
-                joint.take(row.time_s, row.position_rad[i]);
+            for (time_s, angle) in motion.time_s.iter().zip(&motion.position_rad[i]) {
+                if angle.is_finite() {
+                    joint.take(*time_s, *angle);
+                }
             }
         }
     }

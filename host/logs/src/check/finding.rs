@@ -1,6 +1,6 @@
 //! The findings of a check.
 
-use crate::error::{Place, Reason};
+use crate::error::{Error, Place, Reason, Result};
 use crate::output::readable;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -117,6 +117,17 @@ impl Findings {
     pub fn refuse(&mut self, kind: &'static str, place: Place, reason: &dyn Reason) {
         let words = (reason.to_string(), &*reason.remedy());
         self.add(kind, Severity::Refuse, Some(place), words);
+    }
+
+    /// What cannot be read becomes a finding; the system's refusals stay errors.
+    pub fn broken(&mut self, kind: &'static str, error: Error) -> Result<()> {
+        match error {
+            Error::Data { place, reason } => {
+                self.refuse(kind, place, &*reason);
+                Ok(())
+            }
+            other => Err(other),
+        }
     }
 
     /// Adds what a file has at most once.

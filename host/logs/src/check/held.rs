@@ -4,8 +4,8 @@
 //! repeated and the next one has caught up with the motion, the repeated rows are no measurements:
 //! they are wrong by the speed times their age.
 
+use super::LoggedFile;
 use super::finding::Findings;
-use crate::error::Place;
 use crate::output::number::percent;
 
 /// A joint moves where it does so by more than so many of its smallest changes a sample: less may
@@ -23,13 +23,14 @@ const SLOW_SENSOR: f64 = 0.3;
 #[derive(Debug, Default)]
 pub(super) struct HeldReadings {
     /// Present reading, where it first stood, and in how many rows it stands.
-    present: Option<(f64, Place, usize)>,
+    present: Option<(f64, usize, usize)>,
     /// Change a row from the reading before to the present one.
     change: f64,
     /// Rows in motion, and those of them that only repeat.
     moving: usize,
     held: usize,
-    first: Option<Place>,
+    /// Line of the first that is held.
+    first: Option<usize>,
 }
 
 impl HeldReadings {
@@ -40,9 +41,9 @@ impl HeldReadings {
     }
 
     /// Takes a reading; `smallest` is the smallest change seen so far, 0 before any.
-    pub fn take(&mut self, value: f64, smallest: f64, place: impl FnOnce() -> Place) {
+    pub fn take(&mut self, value: f64, smallest: f64, line: usize) {
         let Some((present, begin, rows)) = &mut self.present else {
-            self.present = Some((value, place(), 1));
+            self.present = Some((value, line, 1));
             return;
         };
         if value == *present {
@@ -54,17 +55,17 @@ impl HeldReadings {
             self.moving += *rows;
             self.held += *rows - 1;
             if *rows > 1 && self.first.is_none() {
-                self.first = Some(begin.clone());
+                self.first = Some(*begin);
             }
         }
         self.change = change;
-        self.present = Some((value, place(), 1));
+        self.present = Some((value, line, 1));
     }
 
-    /// Says how many rows of the column `name` are held, if they are more than chance.
-    pub fn judge(&mut self, name: &str, findings: &mut Findings) {
+    /// Says how many rows of a column, its name and field, are held, if they are more than chance.
+    pub fn judge(&self, (name, field): (&str, usize), file: &LoggedFile, findings: &mut Findings) {
         let share = self.held as f64 / self.moving.max(1) as f64;
-        let Some(place) = self.first.take() else {
+        let Some(line) = self.first else {
             return;
         };
         if self.held < LEAST_ROWS || share < LEAST_SHARE {
@@ -83,6 +84,6 @@ impl HeldReadings {
         };
         let remedy = "leave the field empty, or `nan`, where nothing new was read: a held reading \
                       is wrong by the speed times its age";
-        findings.warn("held", place, (what, remedy));
+        findings.warn("held", file.at(line, field), (what, remedy));
     }
 }

@@ -1,15 +1,16 @@
 //! One joint's columns by themselves: range, end stops, steps, standing still.
 
+use super::LoggedFile;
 use super::excitation::name;
 use super::extremes::Extremes;
 use super::finding::Findings;
 use super::held::HeldReadings;
 use super::outlier::Outliers;
 use crate::LogReason;
+use crate::cut::{CutMotion, is_energised};
 use crate::error::Place;
 use crate::model::{ColumnMean, Drive, JointColumns, MeasuredSignal};
 use crate::output::number::percent;
-use crate::row::LogRow;
 use std::f64::consts::{PI, TAU};
 
 /// Standing still for longer than this while the input changes is stuck, s.
@@ -50,7 +51,8 @@ impl StepSizes {
 /// A time during which the position did not change at all.
 #[derive(Debug, Clone)]
 struct Still {
-    begin: Place,
+    /// Line of its begin.
+    line: usize,
     from_s: f64,
     to_s: f64,
     input: Extremes,
@@ -89,6 +91,7 @@ impl ColumnSeries {
 
 /// Running judgement of one joint in one file.
 pub(super) struct JointCheck {
+    joint: usize,
     signal: MeasuredSignal,
     position: ColumnSeries,
     /// The rate, where there is no angle.
@@ -102,12 +105,15 @@ pub(super) struct JointCheck {
     stuck: Vec<Still>,
     held: HeldReadings,
     outliers: Outliers,
+    /// Lines in which the angle has jumped by a whole turn.
+    wraps: Vec<usize>,
 }
 
 impl JointCheck {
-    pub fn new(columns: &JointColumns) -> Self {
+    pub fn new(columns: &JointColumns, joint: usize) -> Self {
         let declared = columns.position.as_ref().and_then(ColumnMean::resolution);
         JointCheck {
+            joint,
             signal: columns.signal(),
             position: ColumnSeries::new(name(&columns.position)),
             rate: ColumnSeries::new(name(&columns.velocity)),
@@ -118,54 +124,55 @@ impl JointCheck {
             stuck: Vec::new(),
             held: HeldReadings::default(),
             outliers: Outliers::default(),
+            wraps: Vec::new(),
         }
     }
 
-    pub fn take(&mut self, row: &LogRow, joint: usize, fresh: bool, findings: &mut Findings) {
-        self.rows += 1;
-        let energised = row.torque_on != Some(false);
-        let input = row.input[joint].filter(|input| energised && input.is_finite());
-        let angle = row.position_rad[joint];
-        if fresh || !angle.is_finite() {
-            self.outliers.restart();
+    pub fn take(&mut self, CutMotion { motion, lines, .. }: &CutMotion) {
+        let joint = self.joint;
+        let (angles, input) = (&motion.position_rad[joint], &motion.input[joint]);
+        let rate = &motion.velocity_rad_s[joint];
+        self.rows += motion.len();
+        self.position.steps.previous = None;
+        self.input.steps.previous = None;
+        self.held.restart();
+        self.outliers.restart();
+        for (k, angle) in angles.iter().enumerate() {
+            let input = input.as_ref().map(|input| input[k]);
+            let input = input.filter(|input| is_energised(motion, k) && input.is_finite());
+            if let Some(input) = input {
+                self.input.take(input);
+            }
+            if angle.is_finite() {
+                self.take_angle(*angle, motion.time_s[k], lines[k], input);
+            } else {
+                self.outliers.restart();
+                rate.iter().for_each(|rate| self.rate.take(rate[k]));
+            }
         }
-        if !angle.is_finite() {
-            self.rate
-                .take(row.velocity_rad_s[joint].unwrap_or(f64::NAN));
-            input.into_iter().for_each(|input| self.input.take(input));
-            return;
-        }
-        let place = row.place(row.fields.position[joint]);
-        if fresh {
-            self.position.steps.previous = None;
-            self.input.steps.previous = None;
-            self.held.restart();
-        }
+        self.end_still();
+    }
+
+    fn take_angle(&mut self, angle: f64, time_s: f64, line: usize, input: Option<f64>) {
         let previous = self.position.steps.previous;
-        let turns = self.signal == MeasuredSignal::Angle;
         let jumped = |previous: f64| ((angle - previous).abs() - TAU).abs() < 0.5;
-        if turns && previous.is_some_and(jumped) {
-            let column = self.position.name.clone();
-            findings.refuse("wrap", place.clone(), &LogReason::AngleWraps { column });
+        if previous.is_some_and(jumped) {
+            self.wraps.push(line);
         }
         if previous != Some(angle) {
             self.end_still();
         }
-        let smallest = self.position.steps.smallest;
-        self.held.take(angle, smallest, || place.clone());
+        self.held.take(angle, self.position.steps.smallest, line);
         self.position.take(angle);
-        self.outliers.take(angle, place.clone());
+        self.outliers.take(angle, line);
         let still = self.still.get_or_insert(Still {
-            begin: place,
-            from_s: row.time_s,
-            to_s: row.time_s,
+            line,
+            from_s: time_s,
+            to_s: time_s,
             input: Extremes::NONE,
         });
-        still.to_s = row.time_s;
-        if let Some(input) = input {
-            self.input.take(input);
-            still.input.take(input);
-        }
+        still.to_s = time_s;
+        input.into_iter().for_each(|input| still.input.take(input));
     }
 
     /// Keeps a still run that lasted while the input changed; the largest changes if there are
@@ -183,17 +190,24 @@ impl JointCheck {
         self.stuck.truncate(RUNS);
     }
 
-    pub fn judge(&mut self, place: &Place, drive: &Drive, findings: &mut Findings) {
-        self.end_still();
+    pub fn judge(&self, file: &LoggedFile, drive: &Drive, findings: &mut Findings) {
+        let place = &file.place();
+        let column = &self.position.name;
+        let named = (column.as_str(), file.cut.fields.position[self.joint]);
+        let turns = self.signal == MeasuredSignal::Angle;
+        for line in self.wraps.iter().filter(|_| turns) {
+            let column = column.clone();
+            let reason = LogReason::AngleWraps { column };
+            findings.refuse("wrap", file.at(*line, named.1), &reason);
+        }
         self.judge_missing(place, findings);
-        self.judge_stuck(findings);
-        self.held.judge(&self.position.name, findings);
-        let unit = self.signal.unit();
-        self.outliers.judge(&self.position.name, unit, findings);
+        self.judge_stuck(named.1, file, findings);
+        self.held.judge(named, file, findings);
+        self.outliers
+            .judge(named, self.signal.unit(), file, findings);
         self.judge_extremes(place, drive, findings);
         self.judge_steps(place, findings);
-        let (column, range) = (&self.position.name, self.position.extremes.range());
-        let turns = self.signal == MeasuredSignal::Angle;
+        let range = self.position.extremes.range();
         if turns && matches!(drive, Drive::Position { .. }) && range > 4.0 * PI {
             let what = format!("{column} ranges over {range:.0} rad: degrees declared as rad?");
             let remedy = "check the column's unit in the model's [log]";
@@ -217,17 +231,17 @@ impl JointCheck {
         }
     }
 
-    fn judge_stuck(&mut self, findings: &mut Findings) {
+    fn judge_stuck(&self, field: usize, file: &LoggedFile, findings: &mut Findings) {
         let least = 0.1 * self.input.extremes.range();
         let (position, input) = (&self.position.name, &self.input.name);
-        for still in self.stuck.drain(..).filter(|s| s.input.range() > least) {
+        for still in self.stuck.iter().filter(|s| s.input.range() > least) {
             let (lasts_s, range) = (still.to_s - still.from_s, still.input.range());
             let what = format!(
                 "{position} does not change for {lasts_s:.1} s while {input} ranges over {range:.3}"
             );
             let remedy = "an end stop, a dead encoder, or stiction: leave the rows out unless \
                           stiction is the question";
-            findings.warn("stuck", still.begin, (what, remedy));
+            findings.warn("stuck", file.at(still.line, field), (what, remedy));
         }
     }
 

@@ -1,7 +1,7 @@
 //! Single samples far off those before and after: damaged bytes, not motion.
 
+use super::LoggedFile;
 use super::finding::Findings;
-use crate::error::Place;
 use std::collections::VecDeque;
 
 /// A sample is an outlier where it lies this many times farther off both neighbours than any other
@@ -22,15 +22,15 @@ struct Candidate {
     off: f64,
     value: f64,
     sample: usize,
-    place: Place,
+    line: usize,
 }
 
 /// Running search in one column of one file.
 #[derive(Debug, Default)]
 pub(super) struct Outliers {
     samples: usize,
-    /// The last two samples and their places.
-    recent: VecDeque<(f64, Place)>,
+    /// The last two samples and their lines.
+    recent: VecDeque<(f64, usize)>,
     /// Farthest first.
     candidates: Vec<Candidate>,
     /// Largest first: size, and the sample in which the step ends.
@@ -43,14 +43,14 @@ impl Outliers {
         self.recent.clear();
     }
 
-    pub fn take(&mut self, value: f64, place: Place) {
+    pub fn take(&mut self, value: f64, line: usize) {
         self.samples += 1;
         let sample = self.samples;
         if let Some((previous, _)) = self.recent.back() {
             let step = (value - previous).abs();
             keep(&mut self.steps, (step, sample), STEPS, |step| step.0);
         }
-        if let [(before, _), (middle, at)] = self.recent.make_contiguous() {
+        if let [(before, _), (middle, line)] = self.recent.make_contiguous() {
             let (out, back) = (*middle - *before, *middle - value);
             let off = out.abs().min(back.abs());
             if out * back > 0.0 && (value - *before).abs() < RETURNS * off {
@@ -58,17 +58,24 @@ impl Outliers {
                     off,
                     value: *middle,
                     sample: sample - 1,
-                    place: at.clone(),
+                    line: *line,
                 };
                 keep(&mut self.candidates, candidate, CANDIDATES, |c| c.off);
             }
             self.recent.pop_front();
         }
-        self.recent.push_back((value, place));
+        self.recent.push_back((value, line));
     }
 
-    /// Says which samples are outliers; `unit` is that of the values.
-    pub fn judge(&mut self, column: &str, unit: &str, findings: &mut Findings) {
+    /// Says which samples of a column, its name and field, are outliers; `unit` is that of the
+    /// values.
+    pub fn judge(
+        &self,
+        (column, field): (&str, usize),
+        unit: &str,
+        file: &LoggedFile,
+        findings: &mut Findings,
+    ) {
         let count = (1..=self.candidates.len()).rev().find(|count| {
             let nearest = self.candidates[count - 1].off;
             nearest > FARTHER * self.usual_step(*count)
@@ -77,10 +84,10 @@ impl Outliers {
             return;
         };
         let usual = self.usual_step(count);
-        let mut found: Vec<Candidate> = self.candidates.drain(..count).collect();
+        let mut found: Vec<&Candidate> = self.candidates[..count].iter().collect();
         found.sort_by_key(|candidate| candidate.sample);
         for Candidate {
-            off, value, place, ..
+            off, value, line, ..
         } in found
         {
             let what = format!(
@@ -89,7 +96,7 @@ impl Outliers {
             );
             let remedy = "a damaged reading draws a fit to itself: delete the value, which leaves \
                           a gap";
-            findings.warn("outlier", place, (what, remedy));
+            findings.warn("outlier", file.at(*line, field), (what, remedy));
         }
     }
 

@@ -3,9 +3,9 @@
 use super::extremes::Extremes;
 use super::fit::{LineFit, Regression};
 use super::stretch::{Stretch, Stretches};
+use crate::cut::is_energised;
 use crate::model::{AngleZero, Angles, Drive, Model};
-use crate::row::LogRow;
-use std::collections::VecDeque;
+use crate::motion::Motion;
 
 mod judge;
 
@@ -22,8 +22,6 @@ pub(super) struct Relations {
     slides: bool,
     /// Per joint: how the input drives it.
     drives: Vec<InputKind>,
-    /// Recent samples' inputs, newest first.
-    recent: VecDeque<Vec<Option<f64>>>,
     /// Per joint and lag: measured against goal.
     follow: Vec<[LineFit; LAGS.len()]>,
     /// Per joint: logged speed against the angle's.
@@ -34,7 +32,6 @@ pub(super) struct Relations {
     turning: Vec<Option<Vec<usize>>>,
     /// Per joint: acceleration on inputs, gravity, speed and the direction of motion.
     push: Vec<Regression>,
-    stretches: Stretches,
     supply_v: Extremes,
 }
 
@@ -64,56 +61,67 @@ impl Relations {
                 .iter()
                 .map(|joint| kind(&joint.drive))
                 .collect(),
-            recent: VecDeque::new(),
             follow: vec![[LineFit::default(); LAGS.len()]; n],
             speed: vec![LineFit::default(); n],
             rate: vec![LineFit::default(); n],
             turning: (0..n).map(|joint| turning(model, joint)).collect(),
             push: (0..n).map(|_| Regression::new(5 * n + 1)).collect(),
-            stretches: Stretches::default(),
             supply_v: Extremes::NONE,
         }
     }
 
-    pub fn take(&mut self, row: &LogRow, fresh: bool) {
-        if fresh || row.torque_on == Some(false) {
-            self.recent.clear();
-            self.stretches.reset();
+    pub fn take(&mut self, motion: &Motion) {
+        let volts = motion.supply_v.iter().flatten();
+        volts.for_each(|volts| self.supply_v.take(*volts));
+        let is_driven = self.drives.iter().any(|kind| *kind != InputKind::None);
+        let mut stretches = Stretches::default();
+        // First sample since torque came on.
+        let mut begin = 0;
+        for k in 0..motion.len() {
+            if !is_energised(motion, k) {
+                begin = k + 1;
+                stretches.reset();
+                if is_driven {
+                    continue;
+                }
+            }
+            self.take_goals(motion, begin, k);
+            // A stretch takes whole rows.
+            if !is_whole(motion, k) {
+                stretches.reset();
+            } else if let Some(stretch) = stretches.take(&motion.time_s, k) {
+                self.take_stretch(motion, stretch);
+            }
         }
-        if let Some(volts) = row.supply_v {
-            self.supply_v.take(volts);
-        }
-        if row.torque_on == Some(false) && self.drives.iter().any(|kind| *kind != InputKind::None) {
-            return;
-        }
-        self.recent.push_front(row.input.clone());
-        self.recent.truncate(LAGS[LAGS.len() - 1] + 1);
-        for joint in 0..self.drives.len() {
-            let measured = match self.drives[joint] {
-                InputKind::Angle => Some(row.position_rad[joint]),
-                InputKind::Speed => row.velocity_rad_s[joint],
-                _ => None,
+    }
+
+    /// Holds what sample `k` measures against goals that may be as old as sample `begin`.
+    fn take_goals(&mut self, motion: &Motion, begin: usize, k: usize) {
+        for (joint, kind) in self.drives.iter().enumerate() {
+            let measured = match (kind, &motion.velocity_rad_s[joint]) {
+                (InputKind::Angle, _) => motion.position_rad[joint][k],
+                (InputKind::Speed, Some(speed)) => speed[k],
+                _ => continue,
             };
-            let Some(measured) = measured else { continue };
+            let Some(goals) = &motion.input[joint] else {
+                continue;
+            };
             for (line, lag) in self.follow[joint].iter_mut().zip(LAGS) {
-                let goal = self.recent.get(lag).and_then(|inputs| inputs[joint]);
+                let goal = k.checked_sub(lag).filter(|then| *then >= begin);
+                let goal = goal.map(|then| goals[then]);
                 if let Some(goal) = goal.filter(|goal| (goal - measured).is_finite()) {
                     line.add(goal, measured);
                 }
             }
         }
-        // A stretch takes whole rows.
-        if !is_whole(row) {
-            self.stretches.reset();
-            return;
-        }
-        if let Some(stretch) = self.stretches.take(row) {
-            self.take_stretch(&stretch, row);
-        }
     }
 
-    fn take_stretch(&mut self, stretch: &Stretch, row: &LogRow) {
+    fn take_stretch(&mut self, motion: &Motion, stretch: Stretch) {
         let n = self.drives.len();
+        let of_each = |of: &dyn Fn(usize) -> f64| (0..n).map(of).collect::<Vec<f64>>();
+        let angles = of_each(&|i| stretch.mean(motion, Some(&motion.position_rad[i])));
+        let speeds = of_each(&|i| stretch.speed_rad_s(motion, i));
+        let accelerations = of_each(&|i| stretch.acceleration_rad_s2(motion, i));
         // Relative angles drive; absolute ones feel gravity.
         let relative = |values: &[f64], i: usize| match (self.angles, i) {
             (Angles::Absolute, 1..) => values[i] - values[i - 1],
@@ -121,33 +129,33 @@ impl Relations {
         };
         let mut x = Vec::with_capacity(5 * n + 1);
         let mut absolute = self.zero.from_hanging_rad();
-        for i in 0..n {
+        for (i, angle) in angles.into_iter().enumerate() {
             absolute = match self.angles {
-                Angles::Relative => absolute + stretch.position_rad[i],
-                Angles::Absolute => self.zero.from_hanging_rad() + stretch.position_rad[i],
+                Angles::Relative => absolute + angle,
+                Angles::Absolute => self.zero.from_hanging_rad() + angle,
             };
-            let speed = relative(&stretch.speed_rad_s, i);
-            let input = if self.drives[i] == InputKind::Push {
-                stretch.input[i]
-            } else {
-                0.0
+            let speed = relative(&speeds, i);
+            let input = match self.drives[i] {
+                InputKind::Push => stretch.mean_held(motion, motion.input[i].as_deref()),
+                _ => 0.0,
             };
             x.extend([input, absolute.sin(), absolute.cos(), speed, speed.signum()]);
         }
         x.push(1.0);
         for i in 0..n {
-            if let Some(turning) = &self.turning[i]
-                && row.rate_rad_s[i].is_some()
-                && stretch.rate_rad_s[i].is_finite()
-            {
-                let felt = turning.iter().map(|j| relative(&stretch.speed_rad_s, *j));
-                self.rate[i].add(felt.sum(), stretch.rate_rad_s[i]);
+            let mean = |values: Option<&[f64]>| {
+                let mean = stretch.mean(motion, Some(values?));
+                Some(mean).filter(|mean| mean.is_finite())
+            };
+            if let (Some(turning), Some(rate)) = (&self.turning[i], mean(motion.rate(i))) {
+                let felt = turning.iter().map(|j| relative(&speeds, *j));
+                self.rate[i].add(felt.sum(), rate);
             }
-            if row.velocity_rad_s[i].is_some() && stretch.logged_speed_rad_s[i].is_finite() {
-                self.speed[i].add(stretch.speed_rad_s[i], stretch.logged_speed_rad_s[i]);
+            if let Some(logged) = mean(motion.velocity_rad_s[i].as_deref()) {
+                self.speed[i].add(speeds[i], logged);
             }
-            if !self.slides && relative(&stretch.speed_rad_s, i).abs() > MOVING_RAD_S {
-                self.push[i].add(&x, relative(&stretch.acceleration_rad_s2, i));
+            if !self.slides && relative(&speeds, i).abs() > MOVING_RAD_S {
+                self.push[i].add(&x, relative(&accelerations, i));
             }
         }
     }
@@ -160,9 +168,11 @@ fn turning(model: &Model, joint: usize) -> Option<Vec<usize>> {
     Some(model.turning(columns.rate_sensor, joint))
 }
 
-/// Whether a row says all that a stretch needs: every angle and every input.
-fn is_whole(row: &LogRow) -> bool {
-    let inputs = row.input.iter().flatten();
-    let mut all = row.position_rad.iter().chain(inputs);
-    all.all(|value| value.is_finite())
+/// Whether a sample has all that a stretch needs: every angle and every input.
+fn is_whole(motion: &Motion, k: usize) -> bool {
+    let mut all = motion
+        .position_rad
+        .iter()
+        .chain(motion.input.iter().flatten());
+    all.all(|values| values[k].is_finite())
 }

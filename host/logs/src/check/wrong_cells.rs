@@ -3,7 +3,7 @@
 
 use super::finding::Findings;
 use crate::LogReason;
-use crate::error::{Error, Place};
+use crate::error::{Error, Place, Result};
 use std::collections::BTreeMap;
 
 /// Lines that are named beside the first.
@@ -33,24 +33,17 @@ struct Alike {
 /// Running account of the rows of a file.
 #[derive(Debug, Default)]
 pub(super) struct WrongCells {
-    rows: usize,
     alike: BTreeMap<(String, Fault), Alike>,
 }
 
 impl WrongCells {
-    /// Counts a row that was read.
-    pub fn read(&mut self) {
-        self.rows += 1;
-    }
-
     /// Takes the error of a row; gives it back if it is about no single cell.
-    pub fn take(&mut self, error: Error) -> Result<(), Error> {
+    pub fn take(&mut self, error: Error) -> Result<()> {
         let reason = error.reason::<LogReason>().cloned();
         let key = reason.as_ref().and_then(key);
         let (Error::Data { place, .. }, Some(reason), Some(key)) = (&error, reason, key) else {
             return Err(error);
         };
-        self.rows += 1;
         let alike = self.alike.entry(key).or_default();
         alike.cells += 1;
         match (&alike.first, place.line) {
@@ -61,11 +54,11 @@ impl WrongCells {
         Ok(())
     }
 
-    /// Ends the file: whether a column as a whole is refused.
-    pub fn close(&mut self, findings: &mut Findings) -> bool {
-        let WrongCells { rows, alike } = std::mem::take(self);
+    /// Ends a file of so many rows: whether a column as a whole is refused.
+    pub fn close(self, rows: usize, findings: &mut Findings) -> bool {
         let is_whole = |alike: &Alike| alike.cells > 1 && 10 * alike.cells >= OF_TEN * rows;
-        let (whole, single): (Vec<Alike>, Vec<Alike>) = alike.into_values().partition(is_whole);
+        let (whole, single): (Vec<Alike>, Vec<Alike>) =
+            self.alike.into_values().partition(is_whole);
         let any = !whole.is_empty();
         for Alike { cells, first, .. } in whole {
             if let Some((place, cell)) = first {

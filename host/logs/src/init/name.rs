@@ -3,7 +3,7 @@
 use super::counts::counts;
 use super::words::{
     AXES, DERIVED, DUTY, EFFORT, GOAL, MEASURED, ON, OTHER, PER_TURN, PLAIN, POSITION, SEGMENT,
-    SUPPLY, TIME, TORQUE, UNIT_WORDS, VELOCITY,
+    SUPPLY, TIME, TORQUE, UNIT_WORDS, VELOCITY, is_one_of,
 };
 use crate::model::{Dimension, Unit};
 
@@ -79,16 +79,16 @@ pub fn name_guess(name: &str) -> NameGuess {
         None => (words(bare), bracketed),
     };
     let (unit, unit_words) = unit(&words, bracketed);
-    let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
+    let has = |list: &str| words.iter().any(|word| is_one_of(list, word));
     let is_time = is_time(&words) || is_time(&self::words(field_of(name)));
     let role = role(&words, is_time, unit.map(|(unit, _)| unit));
     let unit = unit.or_else(|| Some((joint_state_unit(name, role?)?, None)));
-    let sets = [
+    let lists = [
         TIME, SEGMENT, SUPPLY, ON, GOAL, TORQUE, EFFORT, DUTY, VELOCITY, POSITION, MEASURED,
         DERIVED, PLAIN,
     ];
     let left = words[..words.len() - unit_words].iter();
-    let left = left.filter(|word| !sets.iter().any(|set| set.contains(&word.as_str())));
+    let left = left.filter(|word| !lists.iter().any(|list| is_one_of(list, word)));
     let joint = left.cloned().collect::<Vec<_>>().join("_");
     let rank = match (has(MEASURED), has(DERIVED)) {
         (_, true) => 2,
@@ -107,7 +107,7 @@ pub fn name_guess(name: &str) -> NameGuess {
 /// share.
 fn is_number_of_joint(bare: &str, text: &str) -> bool {
     let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    let is_duty = || words(bare).iter().any(|word| DUTY.contains(&word.as_str()));
+    let is_duty = || words(bare).iter().any(|word| is_one_of(DUTY, word));
     is_number && !(text == "1" && is_duty())
 }
 
@@ -135,7 +135,7 @@ fn joint_state_unit(name: &str, role: Role) -> Option<&'static str> {
 /// Whether some word of a name is one for an angle.
 pub fn names_an_angle(name: &str) -> bool {
     let words = words(bracketed(name).0);
-    words.iter().any(|word| POSITION.contains(&word.as_str()))
+    words.iter().any(|word| is_one_of(POSITION, word))
 }
 
 /// Whether a name says that the column holds a current.
@@ -151,13 +151,13 @@ fn field_of(name: &str) -> &str {
 
 fn is_time(words: &[String]) -> bool {
     let first = words.first();
-    first.is_some_and(|word| TIME.contains(&word.as_str()))
+    first.is_some_and(|word| is_one_of(TIME, word))
 }
 
 fn role(words: &[String], is_time: bool, unit: Option<&'static str>) -> Option<Role> {
-    let has = |set: &[&str]| words.iter().any(|word| set.contains(&word.as_str()));
+    let has = |list: &str| words.iter().any(|word| is_one_of(list, word));
     let is = |unit: Option<&str>, names: &[&str]| unit.is_some_and(|unit| names.contains(&unit));
-    let speed = has(VELOCITY) || is(unit, &["rad/s", "deg/s", "rpm"]) || has(&["dot"]);
+    let speed = has(VELOCITY) || is(unit, &["rad/s", "deg/s", "rpm"]) || has("dot");
     let torque = has(TORQUE) || is(unit, &["N m", "mN m", "kgf cm"]);
     if has(ON) {
         return Some(Role::TorqueOn);
@@ -167,10 +167,10 @@ fn role(words: &[String], is_time: bool, unit: Option<&'static str>) -> Option<R
     }
     let other = has(OTHER);
     let moves = speed || has(POSITION);
-    let goal = has(GOAL) || (has(&["input"]) && moves);
+    let goal = has(GOAL) || (has("input") && moves);
     match () {
         () if has(SEGMENT) => Some(Role::Segment),
-        () if has(&["payload"]) => Some(Role::Payload),
+        () if has("payload") => Some(Role::Payload),
         () if other || (has(AXES) && !speed) => None,
         () if torque => Some(Role::Torque),
         () if has(DUTY) => Some(Role::Duty),
@@ -227,7 +227,8 @@ fn unit(words: &[String], bracketed: Option<&str>) -> (Option<(&'static str, Opt
 
 fn unit_word(text: &str) -> Option<&'static str> {
     let mut known = UNIT_WORDS.iter();
-    known.find(|(word, _)| *word == text).map(|(_, unit)| *unit)
+    let known = known.find(|(_, words)| is_one_of(words, text));
+    known.map(|(unit, _)| *unit)
 }
 
 /// Lower-case words: cut at signs, between small and capital letters, and around digits.

@@ -4,23 +4,20 @@
 //! fields of a structure `NAME.FIELD`; moments count in s from the first. A null is a gap. Text,
 //! bytes, maps, lists within lists and lists of different lengths are left out.
 
-mod decode;
-mod footer;
+mod column;
+mod judge;
 mod leaf;
 mod pages;
-mod series;
-mod varint;
 
 use super::{LogTable, MOST_CELLS, TableFile};
-use crate::error::Result;
 use bytes::Bytes;
-use leaf::{ParquetLeaf, leaves};
-use pages::JudgedBytes;
+use column::{ParquetSource, columns};
+use leaf::leaves;
+use pages::{CellsLeft, broken};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaDataReader;
 use rayon::prelude::*;
-use series::{ParquetSource, columns};
-use std::sync::Arc;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// At both ends of a file.
 const MAGIC: &[u8] = b"PAR1";
@@ -30,53 +27,42 @@ const ENCRYPTED: &[u8] = b"PARE";
 const FEW_CELLS: usize = 1_000_000;
 const CELLS_PER_BYTE: usize = 1024;
 
-pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<LogTable> {
+pub(super) fn read(bytes: Bytes, file: TableFile) -> crate::error::Result<LogTable> {
     let remedy = "write it again, or as CSV, in Python: \
                   pandas.read_parquet(\"a.parquet\").to_csv(\"a.csv\", index=False)";
     let metadata = metadata(&bytes).map_err(|what| file.wrong(what, remedy))?;
-    let broken = |why: &dyn std::fmt::Display| file.wrong(format!("broken: {why}"), remedy);
-    footer::judge(metadata).map_err(|why| broken(&why))?;
-    let metadata =
-        ParquetMetaDataReader::decode_metadata(metadata).map_err(|error| broken(&said(&error)))?;
+    let refused = |error: ParquetError| file.wrong(format!("broken: {}", said(error)), remedy);
+    judge::judge(metadata).map_err(|why| refused(broken(why)))?;
+    let metadata = caught(|| ParquetMetaDataReader::decode_metadata(metadata)).map_err(refused)?;
     let leaves = leaves(metadata.file_metadata().schema());
     let cells = FEW_CELLS.saturating_add(bytes.len().saturating_mul(CELLS_PER_BYTE));
     let source = ParquetSource {
-        bytes: Arc::new(JudgedBytes(bytes)),
+        bytes,
         metadata,
-        cells_left: cells.min(MOST_CELLS).into(),
+        cells_left: CellsLeft::new(cells.min(MOST_CELLS)),
     };
     let read: Vec<_> = leaves
         .par_iter()
         .enumerate()
-        .map(|(index, leaf)| columns(&source, leaf, index))
+        .map(|(index, leaf)| caught(|| columns(&source, leaf, index)))
         .collect();
     let mut table = LogTable::default();
-    for (
-        ParquetLeaf {
-            name,
-            element_level,
-            ..
-        },
-        columns,
-    ) in leaves.into_iter().zip(read)
-    {
-        match columns.map_err(|error| broken(&said(&error)))? {
-            Err(why) => table.left_out.push((name, why.into())),
+    for (leaf, columns) in leaves.into_iter().zip(read) {
+        match columns.map_err(refused)? {
+            Err(why) => table.left_out.push((leaf.name, why.into())),
             Ok(columns) => {
-                let numbered = element_level.is_some();
-                for (place, column) in columns.into_iter().enumerate() {
-                    table.names.push(match numbered {
-                        true => format!("{name}_{}", place + 1),
-                        false => name.clone(),
-                    });
-                    table.columns.push(column);
-                }
+                let names = (1..).map(|place| match leaf.element_level {
+                    Some(_) => format!("{}_{place}", leaf.name),
+                    None => leaf.name.clone(),
+                });
+                table.names.extend(names.take(columns.len()));
+                table.columns.extend(columns);
             }
         }
     }
     let rows = table.rows();
     if table.columns.iter().any(|column| column.len() != rows) {
-        return Err(broken(&"its columns hold different counts of rows"));
+        return Err(refused(broken("its columns hold different counts of rows")));
     }
     match table.names.is_empty() {
         true => Err(file.wrong("no column holds numbers", "save time and angles as numbers")),
@@ -85,7 +71,7 @@ pub(super) fn read(bytes: Bytes, file: TableFile) -> Result<LogTable> {
 }
 
 /// What the end of a file says of it.
-fn metadata(bytes: &[u8]) -> std::result::Result<&[u8], &'static str> {
+fn metadata(bytes: &[u8]) -> Result<&[u8], &'static str> {
     let tail = bytes.split_last_chunk::<4>();
     let (rest, magic) = tail.ok_or("not a Parquet file")?;
     if magic == ENCRYPTED {
@@ -101,10 +87,16 @@ fn metadata(bytes: &[u8]) -> std::result::Result<&[u8], &'static str> {
         .ok_or("a Parquet file that is cut short")
 }
 
+/// What the library reads; where bytes make it panic, they are broken.
+fn caught<T>(read: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, ParquetError> {
+    let read = catch_unwind(AssertUnwindSafe(read));
+    read.unwrap_or_else(|_| Err(broken("its values are not written as it says")))
+}
+
 /// What is wrong, without the kind of error before it.
-fn said(error: &ParquetError) -> String {
+fn said(error: ParquetError) -> String {
     match error {
-        ParquetError::General(why) | ParquetError::EOF(why) => why.clone(),
+        ParquetError::General(why) | ParquetError::EOF(why) => why,
         other => other.to_string(),
     }
 }

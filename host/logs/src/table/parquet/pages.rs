@@ -1,16 +1,18 @@
-//! Pages of a Parquet column, decompressed in bounded memory by libraries that are Rust.
+//! Pages of a Parquet column, judged, counted and decompressed in bounded memory by libraries that
+//! are Rust; the library reads the values in them.
 
-use super::footer::judge_header;
+use super::judge::judge_header;
 use bytes::buf::Reader;
 use bytes::{Buf as _, Bytes};
-use parquet::basic::{Compression, Encoding};
-use parquet::column::page::{Page, PageReader};
+use parquet::basic::Compression;
+use parquet::column::page::{Page, PageMetadata, PageReader};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{ChunkReader, Length};
 use parquet::file::serialized_reader::SerializedPageReader;
 use std::io::Read;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Largest page, bytes; writers make them of a few MB.
 const LARGEST_PAGE: usize = 512 << 20;
@@ -40,30 +42,37 @@ impl ChunkReader for JudgedBytes {
     }
 }
 
+/// How many numbers a file may still hold.
+#[derive(Clone)]
+pub(super) struct CellsLeft(Arc<AtomicUsize>);
+
+impl CellsLeft {
+    pub fn new(cells: usize) -> Self {
+        CellsLeft(Arc::new(cells.into()))
+    }
+
+    /// Counts numbers that are held.
+    pub fn spend(&self, cells: usize) -> Result<()> {
+        let left = |left: usize| left.checked_sub(cells);
+        let spent = self
+            .0
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, left);
+        spent.map_err(|_| broken("it holds more numbers than a file of its length can"))?;
+        Ok(())
+    }
+}
+
 /// The pages of one column in one group of rows.
 pub(super) struct ParquetPages {
     /// Reads them as they stand in the file.
     stored: SerializedPageReader<JudgedBytes>,
+    /// A page that was looked at. The library itself would read on from behind its header, which
+    /// is then taken for one.
+    ahead: Option<Page>,
     compression: Compression,
     /// Most bytes that a page may become.
     most: usize,
-    /// Whether levels stand before the values: of repetition, of definition.
-    has_levels: [bool; 2],
-}
-
-/// A page, decompressed.
-pub(super) enum PlainPage {
-    /// Values that others name by their places.
-    Dictionary { count: usize, values: Bytes },
-    /// Values, and gaps between them.
-    Data {
-        /// Values and gaps.
-        entries: usize,
-        /// Levels of repetition and of definition, in runs; empty where the column has none.
-        levels: [Bytes; 2],
-        values: Bytes,
-        encoding: Encoding,
-    },
+    cells_left: CellsLeft,
 }
 
 impl ParquetPages {
@@ -71,95 +80,67 @@ impl ParquetPages {
     ///
     /// # Errors
     /// A chunk that does not begin in the file.
-    pub fn of(file: Arc<JudgedBytes>, chunk: &ColumnChunkMetaData, rows: usize) -> Result<Self> {
+    pub fn of(
+        file: Arc<JudgedBytes>,
+        chunk: &ColumnChunkMetaData,
+        rows: usize,
+        cells_left: CellsLeft,
+    ) -> Result<Self> {
         let start = chunk
             .dictionary_page_offset()
             .unwrap_or(chunk.data_page_offset());
         if start < 0 || chunk.compressed_size() < 0 {
             return Err(broken("a column lies before the file"));
         }
-        let column = chunk.column_descr();
         let most = usize::try_from(chunk.uncompressed_size()).unwrap_or(0);
-        let compression = chunk.compression();
         // What it reads is not compressed as far as it knows.
         let plain = chunk.clone().into_builder();
         let plain = plain.set_compression(Compression::UNCOMPRESSED).build()?;
         Ok(ParquetPages {
             stored: SerializedPageReader::new(file, &plain, rows, None)?,
-            compression,
+            ahead: None,
+            compression: chunk.compression(),
             most: most.min(LARGEST_PAGE),
-            has_levels: [column.max_rep_level() > 0, column.max_def_level() > 0],
+            cells_left,
         })
     }
 
-    /// The next page.
-    ///
-    /// # Errors
-    /// One that is broken, or compressed by what is not read.
-    pub fn next(&mut self) -> Result<Option<PlainPage>> {
-        let page = self.stored.get_next_page()?;
-        page.map(|page| self.plain(page)).transpose()
-    }
-
-    fn plain(&self, page: Page) -> Result<PlainPage> {
-        Ok(match page {
+    fn plain(&self, mut page: Page) -> Result<Page> {
+        match &mut page {
             Page::DictionaryPage {
                 buf, num_values, ..
-            } => PlainPage::Dictionary {
-                count: num_values as usize,
-                values: self.decompressed(&buf)?,
-            },
-            Page::DataPage {
-                buf,
-                num_values,
-                encoding,
-                def_level_encoding,
-                rep_level_encoding,
-                ..
             } => {
-                let mut values = self.decompressed(&buf)?;
-                let mut levels = [Bytes::new(), Bytes::new()];
-                let encodings = [rep_level_encoding, def_level_encoding];
-                for (place, encoding) in encodings.into_iter().enumerate() {
-                    if self.has_levels[place] {
-                        if encoding != Encoding::RLE {
-                            return Err(broken("a page's levels are not in runs"));
-                        }
-                        levels[place] = with_length(&mut values)?;
-                    }
-                }
-                PlainPage::Data {
-                    entries: num_values as usize,
-                    levels,
-                    values,
-                    encoding,
+                *buf = self.decompressed(buf)?;
+                if *num_values as usize > buf.len() {
+                    return Err(broken("a dictionary is shorter than it says"));
                 }
             }
+            Page::DataPage {
+                buf, num_values, ..
+            } => {
+                self.cells_left.spend(*num_values as usize)?;
+                *buf = self.decompressed(buf)?;
+            }
             Page::DataPageV2 {
-                mut buf,
+                buf,
                 num_values,
-                encoding,
-                def_levels_byte_len,
                 rep_levels_byte_len,
+                def_levels_byte_len,
                 is_compressed,
                 ..
             } => {
-                let lengths = [rep_levels_byte_len, def_levels_byte_len];
-                let mut levels = [Bytes::new(), Bytes::new()];
-                for (level, length) in levels.iter_mut().zip(lengths) {
-                    *level = first(&mut buf, length as usize)?;
+                self.cells_left.spend(*num_values as usize)?;
+                let levels = *rep_levels_byte_len as usize + *def_levels_byte_len as usize;
+                if levels > buf.len() {
+                    return Err(broken("a page is shorter than its levels"));
                 }
-                PlainPage::Data {
-                    entries: num_values as usize,
-                    levels,
-                    values: match is_compressed {
-                        true => self.decompressed(&buf)?,
-                        false => buf,
-                    },
-                    encoding,
+                if *is_compressed {
+                    let values = self.decompressed(&buf.slice(levels..))?;
+                    *buf = [&buf[..levels], &values].concat().into();
                 }
             }
-        })
+        }
+        Ok(page)
     }
 
     fn decompressed(&self, bytes: &Bytes) -> Result<Bytes> {
@@ -178,17 +159,11 @@ impl ParquetPages {
                 let plain = snap::raw::Decoder::new().decompress_vec(bytes);
                 plain.map_err(failed)?
             }
-            Compression::GZIP(_) => {
-                let unpacked = flate2::read::MultiGzDecoder::new(&bytes[..]);
-                at_most(unpacked, most)?
-            }
+            Compression::GZIP(_) => at_most(flate2::read::MultiGzDecoder::new(&bytes[..]), most)?,
             Compression::LZ4_RAW => {
                 // A byte more of length stands for 255 bytes.
                 let most = most.min(255 * bytes.len() + 64);
-                let plain = lz4_flex::block::decompress(bytes, most);
-                let mut plain = plain.map_err(failed)?;
-                plain.shrink_to_fit();
-                plain
+                lz4_flex::block::decompress(bytes, most).map_err(failed)?
             }
             Compression::ZSTD(_) => {
                 let unpacked = ruzstd::decoding::StreamingDecoder::new(&bytes[..]);
@@ -201,6 +176,42 @@ impl ParquetPages {
             }
         };
         Ok(Bytes::from(plain))
+    }
+}
+
+impl PageReader for ParquetPages {
+    fn get_next_page(&mut self) -> Result<Option<Page>> {
+        match self.ahead.take() {
+            Some(page) => Ok(Some(page)),
+            None => {
+                let page = self.stored.get_next_page()?;
+                page.map(|page| self.plain(page)).transpose()
+            }
+        }
+    }
+
+    fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+        self.ahead = self.get_next_page()?;
+        Ok(self.ahead.as_ref().map(|page| PageMetadata {
+            num_rows: match page {
+                Page::DataPageV2 { num_rows, .. } => Some(*num_rows as usize),
+                _ => None,
+            },
+            num_levels: Some(page.num_values() as usize),
+            is_dict: page.is_dictionary_page(),
+        }))
+    }
+
+    fn skip_next_page(&mut self) -> Result<()> {
+        self.get_next_page().map(drop)
+    }
+}
+
+impl Iterator for ParquetPages {
+    type Item = Result<Page>;
+
+    fn next(&mut self) -> Option<Result<Page>> {
+        self.get_next_page().transpose()
     }
 }
 
@@ -221,21 +232,5 @@ fn at_most(unpacked: impl Read, most: usize) -> Result<Vec<u8>> {
     match plain.len() <= most {
         true => Ok(plain),
         false => Err(broken("a page is longer than it says")),
-    }
-}
-
-/// Levels with four bytes before them that say how many.
-fn with_length(page: &mut Bytes) -> Result<Bytes> {
-    let length = first(page, 4)?;
-    let length = length.iter().rev();
-    let length = length.fold(0, |length, byte| length << 8 | usize::from(*byte));
-    first(page, length)
-}
-
-/// Takes so many bytes off the page.
-fn first(page: &mut Bytes, length: usize) -> Result<Bytes> {
-    match length <= page.len() {
-        true => Ok(page.split_to(length)),
-        false => Err(broken("a page is shorter than its levels")),
     }
 }
