@@ -136,7 +136,8 @@ impl Evaluator<'_> {
         })
     }
 
-    /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it was.
+    /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it
+    /// was.
     fn evaluated_other(&self, other: Other, tried: &[Hypothesis]) -> Hypothesis {
         let known = tried
             .iter()
