@@ -1,5 +1,5 @@
-//! Whether `add` and `fit` leave no more than the diagnosis that recommended them, and whether their
-//! intervals hold the truth.
+//! Whether `add` and `fit` leave no more than the diagnosis that recommended them, and whether
+//! their intervals hold the truth.
 //!
 //! A rig hides one effect. It is diagnosed with that effect as the only candidate, the effect is
 //! added over the windows of the diagnosis, and the values of the true model, up to 30 % off, are

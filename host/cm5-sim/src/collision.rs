@@ -3,8 +3,8 @@
 /// A transmitted byte: start of its start bit, ns, and its value.
 pub(super) type Sent = (u64, u8);
 
-/// Bytes that a UART receives from overlapping transmissions of `bit_ns` a bit, each with the end of
-/// its stop bit, ns.
+/// Bytes that a UART receives from overlapping transmissions of `bit_ns` a bit, each with the end
+/// of its stop bit, ns.
 pub(super) fn received(sent: &[Sent], bit_ns: u64) -> Vec<(u64, u8)> {
     // How finely the listener looks for a start bit, ns.
     let look_ns = (bit_ns / 4).max(1);

@@ -39,8 +39,8 @@ impl Answering {
 }
 
 impl<L: SerialLink> Servos<L> {
-    /// Those of `ids` that answer in this protocol, which is the servos' from now on. A silent id is
-    /// asked `patience` times; `step` is told of each id.
+    /// Those of `ids` that answer in this protocol, which is the servos' from now on. A silent id
+    /// is asked `patience` times; `step` is told of each id.
     ///
     /// # Errors
     /// The port failed.

@@ -2,11 +2,12 @@
 //!
 //! The effects' values are fitted along with the model's free ones, by the ways that a diagnosis
 //! takes and from each of the effects' start values; the best is kept. On the motions fitted it
-//! leaves no more than the model refitted without the effects. The new file is the old one with the refitted values and, at its end,
-//! the effects with their intervals, the logs it was fitted to, and the error without and with it;
-//! those of the values it had are renewed. The error without it is that of the model refitted
-//! without it, so that the reduction is the effect's alone; `handstand compare` sets models side by
-//! side as they are, where the reduction is also the refit's.
+//! leaves no more than the model refitted without the effects. The new file is the old one with the
+//! refitted values and, at its end, the effects with their intervals, the logs it was fitted to,
+//! and the error without and with it; those of the values it had are renewed. The error without it
+//! is that of the model refitted without it, so that the reduction is the effect's alone;
+//! `handstand compare` sets models side by side as they are, where the reduction is also the
+//! refit's.
 //!
 //! ```console
 //! $ handstand add arm.toml delay --fit a.csv b.csv --holdout c.csv -o better.toml

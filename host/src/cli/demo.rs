@@ -2,10 +2,10 @@
 //! with `--robot` on a virtual robot that shall balance.
 //!
 //! Hides an effect in a bench arm, judges its logs, compares, diagnoses, does what the diagnosis
-//! advises (adds what was named, refits what is wrong), and opens the answer. Every step is a command
-//! line that could be typed; they go to stderr with what they say, the last table to stdout. Without
-//! `--seed` it is a bench whose effect is named; others (`--seed 1`) end ambiguous: then nothing is
-//! added, and `handstand next` proposes the experiment that decides.
+//! advises (adds what was named, refits what is wrong), and opens the answer. Every step is a
+//! command line that could be typed; they go to stderr with what they say, the last table to
+//! stdout. Without `--seed` it is a bench whose effect is named; others (`--seed 1`) end ambiguous:
+//! then nothing is added, and `handstand next` proposes the experiment that decides.
 //!
 //! ```console
 //! $ handstand demo -o bench
@@ -18,15 +18,16 @@
 //!
 //! `--robot` closes the circle, in a few minutes: a robot hangs on simulated servos behind the
 //! CM-5's firmware (its own logic in process). `--seed` draws what its owner's model has not: the
-//! drives' lag, and dry friction, a dead zone or a wrong mass. A plan for that model is deployed and
-//! falls or sways; the hanging robot is recorded through the firmware; what is missing is diagnosed,
-//! added, and a plan for what was learned is deployed. `page.html` shows both attempts side by side.
-//! The diagnosis tries lag, dead zone, friction and mass alone, on short recordings; `handstand
-//! diagnose` tries all effects on the same files. Exit code 1: the robot does not stand in the end.
+//! drives' lag, and dry friction, a dead zone or a wrong mass. A plan for that model is deployed
+//! and falls or sways; the hanging robot is recorded through the firmware; what is missing is
+//! diagnosed, added, and a plan for what was learned is deployed. `page.html` shows both attempts
+//! side by side. The diagnosis tries lag, dead zone, friction and mass alone, on short recordings;
+//! `handstand diagnose` tries all effects on the same files. Exit code 1: the robot does not stand
+//! in the end.
 //!
-//! `--robot --json` prints `seed`, `nominal` and `learned` (`stood_s`, `stands`, `sway_rms_rad`, once
-//! 2 s have passed, null if it fell before; `end`), `verdict`, `added`, `effects` (`address`, `key`,
-//! `true_value`, `estimate`, `interval`), `named`.
+//! `--robot --json` prints `seed`, `nominal` and `learned` (`stood_s`, `stands`, `sway_rms_rad`,
+//! once 2 s have passed, null if it fell before; `end`), `verdict`, `added`, `effects` (`address`,
+//! `key`, `true_value`, `estimate`, `interval`), `named`.
 
 use super::challenge::text as challenge_text;
 use super::{Cli, Command, Console, ExitStatus, diagnose};

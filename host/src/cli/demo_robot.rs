@@ -12,8 +12,8 @@ use handstand::robot_demo::{DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, ru
 use handstand::{Error, Result};
 use std::path::Path;
 
-/// Runs the circle with the robot of this seed in a new folder; exit code 1 where the robot does not
-/// stand in the end.
+/// Runs the circle with the robot of this seed in a new folder; exit code 1 where the robot does
+/// not stand in the end.
 pub fn run(seed: u64, output: &Path, console: &Console) -> Result<ExitStatus> {
     let refused = |error| Error::file(output, "create", error);
     std::fs::create_dir_all(output).map_err(refused)?;

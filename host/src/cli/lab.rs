@@ -10,9 +10,9 @@
 //! http://127.0.0.1:40123/enter?token=...
 //! ```
 //!
-//! Files may stand in any order: what ends in `.toml`, `.urdf` or `.xml` is the model, what a log ends
-//! in is a log. Without a model the lab leads to making one. No browser is opened unless `--open`
-//! asks for it.
+//! Files may stand in any order: what ends in `.toml`, `.urdf` or `.xml` is the model, what a log
+//! ends in is a log. Without a model the lab leads to making one. No browser is opened unless
+//! `--open` asks for it.
 //!
 //! With `--robot PORT` the Robot page records and balances the robot at that port, live: charts and
 //! the robot's shape follow the samples. Torque comes on after a press and the questions that

@@ -16,9 +16,9 @@
 //! without being told): a line that breaks lets the robot down, and any of its buttons stops it.
 //! `--adapter` passes the packets through it instead, and neither does.
 //!
-//! A servo that does not answer, takes no positions (wheel mode) or has limits that leave a goal out
-//! ends it before anything moves, with exit code 4. Exit code 1: a servo did not follow. One that falls
-//! silent on the way is warned of, with the share of the samples it missed.
+//! A servo that does not answer, takes no positions (wheel mode) or has limits that leave a goal
+//! out ends it before anything moves, with exit code 4. Exit code 1: a servo did not follow. One
+//! that falls silent on the way is warned of, with the share of the samples it missed.
 //!
 //! Servos of Protocol 2.0 stop by their own bus watchdog when the line breaks, unless
 //! `--no-watchdog`.

@@ -6,8 +6,8 @@
 //! Unstable is a robot whose loop has a spectral radius not below 1. The design sees no draw, so
 //! every seed is fresh. Drives are as late as the model has them, and the gains made for it know.
 //!
-//! `--plan FILE` judges gains of your own, what `handstand gains --json` printed; `--q` and `--r` those
-//! of your weights.
+//! `--plan FILE` judges gains of your own, what `handstand gains --json` printed; `--q` and `--r`
+//! those of your weights.
 //!
 //! ```console
 //! $ handstand robust handstand.toml
@@ -56,8 +56,8 @@ pub struct RobustArgs {
     /// Weight of every state in that design
     #[arg(long, value_name = "Q", default_value_t = WEIGHT, value_parser = input::positive)]
     design_q: f64,
-    /// Judge the regulator of these weights, too: of the states, a number, a diagonal, or a CSV file
-    /// of a matrix
+    /// Judge the regulator of these weights, too: of the states, a number, a diagonal, or a CSV
+    /// file of a matrix
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true)]
     #[arg(conflicts_with = "plan")]
     q: Option<WeightArg>,

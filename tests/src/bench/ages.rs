@@ -89,8 +89,8 @@ pub fn ages(rig: &mut ElfCm5, seconds: f64) -> Ages {
     measured(&rounds(&trace), &said, &heard)
 }
 
-/// The plan of the closed loop, for joints that may be anywhere and turn as fast as a clock: else the
-/// firmware would let the robot down at once.
+/// The plan of the closed loop, for joints that may be anywhere and turn as fast as a clock: else
+/// the firmware would let the robot down at once.
 fn unlimited() -> Plan {
     let mut plan = plan().1;
     for joint in &mut plan.joints {

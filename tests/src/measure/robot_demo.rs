@@ -1,5 +1,5 @@
-//! `cargo xtask robot-demo`: `handstand demo --robot` over many seeds: where the nominal plan stands,
-//! where the learned one does, and whether what was hidden was named.
+//! `cargo xtask robot-demo`: `handstand demo --robot` over many seeds: where the nominal plan
+//! stands, where the learned one does, and whether what was hidden was named.
 
 use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};

@@ -1,4 +1,5 @@
-//! `cargo xtask within`: is the answer of a limited time the answer of the whole search, and in time?
+//! `cargo xtask within`: is the answer of a limited time the answer of the whole search, and in
+//! time?
 //!
 //! Bench arms whose law is outside the library, each diagnosed within the limit and then as long as
 //! it takes, one after the other, each on all threads. Fails when fewer than eight in ten verdicts

@@ -10,7 +10,8 @@ fn root() -> PathBuf {
     root.canonicalize().unwrap()
 }
 
-/// A block of a Markdown page whose fence names a file: ```` ```rust host/model/src/effects/new.rs ````.
+/// A block of a Markdown page whose fence names a file:
+/// ```` ```rust host/model/src/effects/new.rs ````.
 struct Block {
     /// `rust` is a new file, `diff` a change of one.
     kind: String,

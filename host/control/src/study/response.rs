@@ -101,7 +101,8 @@ mod tests {
         assert!((response.time_s.last().unwrap() - 6.0).abs() < 0.02);
     }
 
-    /// With integral action the driven joints come back to the pose, and the bar's joint alone leans.
+    /// With integral action the driven joints come back to the pose, and the bar's joint alone
+    /// leans.
     #[test]
     fn integral_action_brings_the_driven_joints_back() {
         let text = include_str!("../../../models/handstand.toml");

@@ -137,8 +137,8 @@ impl<'a> VerifiedLoop<'a> {
     }
 
     /// Spread of the starts that the verdict is from, rad: half a degree; of a plant that falls by
-    /// itself and that friction holds there, the least of its doublings where friction does not. Half
-    /// a degree again where it holds the robot wherever it looks.
+    /// itself and that friction holds there, the least of its doublings where friction does not.
+    /// Half a degree again where it holds the robot wherever it looks.
     pub fn near_rad(&self, closed: &ClosedLoop) -> f64 {
         let held = |spread_rad: f64| {
             let figures = self.figures(closed, &self.no_law(), spread_rad);

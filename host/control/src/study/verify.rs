@@ -28,8 +28,8 @@ const EASIER: f64 = 0.8;
 /// What the simulated loop does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verification {
-    /// The verdict: 95 % of the starts near the pose ([`Verification::near_rad`]) are stabilised, and
-    /// stay so for longer ([`Verification::lasting`]), by the law and not by friction
+    /// The verdict: 95 % of the starts near the pose ([`Verification::near_rad`]) are stabilised,
+    /// and stay so for longer ([`Verification::lasting`]), by the law and not by friction
     /// ([`Verification::held`]).
     pub stabilised: bool,
     /// Which law ran.
@@ -39,8 +39,8 @@ pub struct Verification {
     /// Whether its speeds were differences of the measured angles; else they are exact, or a
     /// filter's.
     pub differences: bool,
-    /// Largest departure of a joint in those starts, rad: half a degree, or more where friction alone
-    /// holds a robot there that would fall by itself.
+    /// Largest departure of a joint in those starts, rad: half a degree, or more where friction
+    /// alone holds a robot there that would fall by itself.
     pub near_rad: f64,
     /// Figures of those starts.
     pub near: Figures,

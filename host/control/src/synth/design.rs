@@ -41,8 +41,8 @@ pub struct Design {
     pub omitted: Vec<OmittedEffect>,
     /// The plant in continuous time.
     pub plant: Continuous,
-    /// The sampled plant, and the delay it holds, s. With integral action the sums are states of it,
-    /// between its own and the past inputs.
+    /// The sampled plant, and the delay it holds, s. With integral action the sums are states of
+    /// it, between its own and the past inputs.
     pub sampled: Option<(Discrete, f64)>,
     /// The sums of angles among the states.
     pub integral: Option<Integral>,

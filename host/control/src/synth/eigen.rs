@@ -29,9 +29,9 @@ pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, DesignError> {
 }
 
 /// A matrix without the states that act on no other or on which no other acts, and their
-/// eigenvalues, which stand on the diagonal: those of past inputs that nothing reads any more are 0.
-/// They come out exactly, and the QR steps may stand still where many of them are left in (Parlett,
-/// Reinsch, Numerische Mathematik 13 (1969) 293).
+/// eigenvalues, which stand on the diagonal: those of past inputs that nothing reads any more are
+/// 0. They come out exactly, and the QR steps may stand still where many of them are left in
+/// (Parlett, Reinsch, Numerische Mathematik 13 (1969) 293).
 fn isolated(mut a: DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     let mut values = Vec::new();
     let alone = |a: &DMatrix<f64>, i: usize| {

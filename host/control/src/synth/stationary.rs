@@ -34,8 +34,8 @@ pub struct Beyond<'a> {
     pub range: f64,
 }
 
-/// The stationary root mean squares; none of a loop that does not decay. `process` is the covariance
-/// of w (N x N), `measurement` of v.
+/// The stationary root mean squares; none of a loop that does not decay. `process` is the
+/// covariance of w (N x N), `measurement` of v.
 pub(super) fn stationary(
     plant: &Discrete,
     compensator: &Compensator,
@@ -137,8 +137,8 @@ mod tests {
         assert!(beyond.rms > beyond.range, "{beyond:?}");
     }
 
-    /// Filter and gains as they run, x(k|k) and u = -K x(k|k), on drawn noise: not the compensator's
-    /// matrices.
+    /// Filter and gains as they run, x(k|k) and u = -K x(k|k), on drawn noise: not the
+    /// compensator's matrices.
     #[test]
     fn a_simulation_with_drawn_noise_moves_as_much() {
         let design = designed(sensors(300.0 / 1024.0, 10.0));

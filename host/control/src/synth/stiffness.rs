@@ -86,8 +86,8 @@ pub fn torque_inputs(model: &Model, pose_rad: &[f64]) -> Result<DMatrix<f64>, De
     Ok(torque)
 }
 
-/// With sums the driven joints rest at the pose, and the inputs are whatever it takes: 0 = A x + B u
-/// + `torque` d, 0 = q of the joints that are summed.
+/// With sums the driven joints rest at the pose, and the inputs are whatever it takes: 0 = A x + B
+/// u + `torque` d, 0 = q of the joints that are summed.
 fn with_sums(
     design: &Design,
     integral: &Integral,

@@ -140,7 +140,8 @@ impl Evaluator<'_> {
         })
     }
 
-    /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it was.
+    /// An equivalent explanation fitted to the measurement and evaluated, as it was tried if it
+    /// was.
     fn evaluated_other(&self, other: Substitute, tried: &[Hypothesis]) -> Hypothesis {
         let known = tried
             .iter()

@@ -148,8 +148,8 @@ impl<'a> Course<'a> {
         self.steps.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A stage begins, of the search or of the one done `again`, of so many steps if it does not end
-    /// early; all before it are done, or needless.
+    /// A stage begins, of the search or of the one done `again`, of so many steps if it does not
+    /// end early; all before it are done, or needless.
     pub fn begin(&self, stage: Stage, again: bool, expected: usize) {
         let mut steps = self.steps();
         steps.pass(stage, again);

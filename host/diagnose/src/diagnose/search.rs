@@ -217,8 +217,9 @@ impl Evaluator<'_> {
         put_among(fewer, rests.collect());
     }
 
-    /// Looks further for sets of the largest size, where the best leaves something to explain: every
-    /// candidate, or, where sets of that size bring nothing over the effects of the best smaller one, those that promise most beside it.
+    /// Looks further for sets of the largest size, where the best leaves something to explain:
+    /// every candidate, or, where sets of that size bring nothing over the effects of the best
+    /// smaller one, those that promise most beside it.
     fn grow_further(&mut self, found: &mut SearchResults) {
         let [.., smaller, larger] = &mut found.sizes[..] else {
             return;

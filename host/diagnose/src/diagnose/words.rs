@@ -155,10 +155,9 @@ pub(super) fn what_was_found(effects: &[FittedEffect], wrong: &[WrongValue]) -> 
     }
 }
 
-/// What an explanation says of the model, as a clause: "A at joint 1 and B are missing", "the mass of
-/// link 1 is twice what the file says".
-/// Of values that the file frees, whose owner claims nothing of them, only where there are no
-/// others.
+/// What an explanation says of the model, as a clause: "A at joint 1 and B are missing", "the mass
+/// of link 1 is twice what the file says". Of values that the file frees, whose owner claims
+/// nothing of them, only where there are no others.
 fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
     let claimed: Vec<&WrongValue> = wrong.iter().filter(|w| !w.free).collect();
     let wrong = if claimed.is_empty() {
@@ -181,8 +180,8 @@ fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
     }
 }
 
-/// "twice", "0.85 times"; of a value that is 0 in the file, or changes its sign, what it is instead:
-/// "0.02 kg, not".
+/// "twice", "0.85 times"; of a value that is 0 in the file, or changes its sign, what it is
+/// instead: "0.02 kg, not".
 fn size(wrong: &WrongValue) -> String {
     let (ratio, fitted) = (wrong.fitted.value / wrong.given, &wrong.fitted);
     match ratio {

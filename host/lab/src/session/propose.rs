@@ -1,4 +1,5 @@
-//! The next experiment: proposed from the diagnosis of the model in force, as `handstand next` does.
+//! The next experiment: proposed from the diagnosis of the model in force, as `handstand next`
+//! does.
 
 use super::LabSession;
 use super::data::model_file;

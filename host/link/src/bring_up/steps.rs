@@ -1,5 +1,5 @@
-//! The steps of the checklist, in their order: nothing gets torque before what would stop it is known
-//! to work.
+//! The steps of the checklist, in their order: nothing gets torque before what would stop it is
+//! known to work.
 
 /// A step.
 #[derive(Debug)]

@@ -102,7 +102,8 @@ fn a_bus_that_is_well_has_no_cause() {
 enum Meeting {
     /// At the very same time: a zero wins.
     AtOnce,
-    /// One behind the other, and both in one read, as an adapter with a latency timer delivers them.
+    /// One behind the other, and both in one read, as an adapter with a latency timer delivers
+    /// them.
     InOneRead,
     /// The second's alone every other time.
     InTurn,

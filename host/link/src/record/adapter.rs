@@ -38,8 +38,8 @@ impl<L: SerialLink> Adapter<L> {
     /// These servos, every `period` or as often as the line allows.
     ///
     /// # Errors
-    /// A servo of a model that is not known, or of Protocol 2.0; the port failed. One that is silent
-    /// is asked again in each round.
+    /// A servo of a model that is not known, or of Protocol 2.0; the port failed. One that is
+    /// silent is asked again in each round.
     pub fn new(mut servos: Servos<L>, ids: &[u8], period: Duration) -> Result<Self> {
         let known = ids.iter().map(|id| known(&mut servos, *id));
         let known = known.collect::<Result<Vec<_>>>()?;

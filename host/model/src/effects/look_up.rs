@@ -13,8 +13,8 @@ pub enum NameMatch {
     Similar(Vec<&'static dyn Effect>),
 }
 
-/// The effects called `name`, whatever its case, hyphens and blanks (`BackEMF`, `dead band`): by id,
-/// else by title or alias, those that model files have defined included.
+/// The effects called `name`, whatever its case, hyphens and blanks (`BackEMF`, `dead band`): by
+/// id, else by title or alias, those that model files have defined included.
 pub fn look_up(name: &str) -> NameMatch {
     let all: Vec<&'static dyn Effect> = EFFECTS
         .iter()

@@ -65,8 +65,8 @@ pub fn mrad_in_column(value_rad: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// A share of 1 as a percentage, with its sign. What is not all of it is never 100 %: it has as many
-/// digits as tell it from that, two at most behind the point.
+/// A share of 1 as a percentage, with its sign. What is not all of it is never 100 %: it has as
+/// many digits as tell it from that, two at most behind the point.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match special(percent) {

@@ -94,8 +94,8 @@ impl Machine {
         }
     }
 
-    /// Where plant and machine rest under torques that last: 0 = A x + B u + `torque` d, z = A z + B
-    /// y, u = C z + D y. At rest the readings are the angles and no rate, whatever their age.
+    /// Where plant and machine rest under torques that last: 0 = A x + B u + `torque` d, z = A z +
+    /// B y, u = C z + D y. At rest the readings are the angles and no rate, whatever their age.
     fn rest(&self, plant: &Continuous, torque: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let mut read = DMatrix::zeros(READINGS, 2 * JOINTS);
         read.view_mut((0, 0), (READINGS, READINGS))

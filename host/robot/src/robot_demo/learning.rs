@@ -10,9 +10,9 @@ use crate::model::edit::{add_effect, set_step};
 use crate::model::{EffectInstance, Model};
 use std::path::Path;
 
-/// Kinds of effects that are tried: those of servos and links that a designer can do something about.
-/// All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries them on the
-/// same files.
+/// Kinds of effects that are tried: those of servos and links that a designer can do something
+/// about. All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries
+/// them on the same files.
 const TRIED: [&str; 4] = ["delay", "dead_zone", "coulomb", "mass"];
 /// Length of the windows that are judged, s: dry friction of the bar, which has no encoder, shows
 /// in how a swing dies down, and in shorter windows their start states take it up.

@@ -76,8 +76,8 @@ impl AddedEffects<'_> {
         }
     }
 
-    /// The lowest of the fits that lead from those in windows, as guessed there and from every start,
-    /// and from the values of the model as given.
+    /// The lowest of the fits that lead from those in windows, as guessed there and from every
+    /// start, and from the values of the model as given.
     fn by_ways(&self, guessed: &InWindows, step: &dyn Fn()) -> Fit {
         let started = OnceCell::new();
         let started = || {

@@ -229,8 +229,8 @@ impl From<CandidateError> for Error {
 /// The effect of this name: its id, or what people call it and no other effect.
 ///
 /// # Errors
-/// [`CandidateError::UnknownEffect`] with those that are like it, [`CandidateError::SeveralEffects`]
-/// with those that are called so.
+/// [`CandidateError::UnknownEffect`] with those that are like it,
+/// [`CandidateError::SeveralEffects`] with those that are called so.
 pub fn effect_named(name: &str) -> Result<&'static dyn Effect, CandidateError> {
     let owned = || name.to_string();
     match look_up(name) {

@@ -1,4 +1,5 @@
-//! The end of a fit that is judged: on no stair of a law that jumps, in steps that are not too long.
+//! The end of a fit that is judged: on no stair of a law that jumps, in steps that are not too
+//! long.
 
 use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};

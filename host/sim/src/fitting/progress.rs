@@ -46,8 +46,8 @@ impl fmt::Display for BestSoFar {
     }
 }
 
-/// The steps of a refit: the fit without what is added, or the only one; those of a fit with it; and
-/// one for its values.
+/// The steps of a refit: the fit without what is added, or the only one; those of a fit with it;
+/// and one for its values.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RefitSteps {
     with: usize,

@@ -18,8 +18,8 @@ use crate::model::{Model, ParameterPath};
 /// thousand samples, by less than one standard error of a value.
 const ALIKE: f64 = 2e-4;
 
-/// Root-mean-square weighted residual up to which two ways that agree are believed. Above it a false
-/// valley may have drawn both, or the model lacks something; then every way is gone.
+/// Root-mean-square weighted residual up to which two ways that agree are believed. Above it a
+/// false valley may have drawn both, or the model lacks something; then every way is gone.
 const NEAR_NOISE: f64 = 1.05;
 
 /// By which windows a fit was led to those that count. Two that took one road may be led astray by

@@ -1,14 +1,14 @@
 //! `bus doctor`: why a servo gives no status packet. Likely causes first, each with what was seen
 //! and what to do.
 //!
-//! It listens for an echo, pings every servo twenty times and reads it twenty times, and where no servo answers tries a
-//! CM-5's firmware, other speeds and other ids. Nothing is written to any servo. Exit code 0: all
-//! is well; 1: causes were found.
+//! It listens for an echo, pings every servo twenty times and reads it twenty times, and where no
+//! servo answers tries a CM-5's firmware, other speeds and other ids. Nothing is written to any
+//! servo. Exit code 0: all is well; 1: causes were found.
 //!
 //! `--bring-up` walks through the checklist of a CM-5's first power-on. What the line can tell is
-//! measured; what needs instruments is asked for, and not done where there is no terminal. The first
-//! of `--ids` gets a tenth of its torque and holds its position. `--json` prints each step's `id`,
-//! `title`, `outcome` (`passed`, `failed`, `not_done`) and `found`.
+//! measured; what needs instruments is asked for, and not done where there is no terminal. The
+//! first of `--ids` gets a tenth of its torque and holds its position. `--json` prints each step's
+//! `id`, `title`, `outcome` (`passed`, `failed`, `not_done`) and `found`.
 
 use super::bring_up;
 use crate::cli::port::{AnyLink, DEFAULT_IDS, Ids, Port, id_list, say_found};

@@ -2,9 +2,9 @@
 //!
 //! The factory's return delay of 500 us alone makes a round of 18 servos last longer than 10 ms;
 //! status level 1 spares the answers to writes. A new id is given only while a single servo is
-//! connected: two of one id would both get it. Twenty readings tell two from one, unless both stand at
-//! the same code and are equally warm. Servos of Protocol 2.0 take these settings with
-//! torque off, and no id above 252.
+//! connected: two of one id would both get it. Twenty readings tell two from one, unless both stand
+//! at the same code and are equally warm. Servos of Protocol 2.0 take these settings with torque
+//! off, and no id above 252.
 
 use super::changes::{self, RegisterChange};
 use super::scan::answering;

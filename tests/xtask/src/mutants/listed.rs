@@ -1,5 +1,5 @@
-//! Mutants kept by hand: what must not survive, and what cargo-mutants does not make (assembler, and
-//! registers that only the ELF has).
+//! Mutants kept by hand: what must not survive, and what cargo-mutants does not make (assembler,
+//! and registers that only the ELF has).
 
 /// Where a mutant's tests run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

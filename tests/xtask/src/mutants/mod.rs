@@ -1,5 +1,5 @@
-//! `cargo xtask mutants`: are the tests of `shared` and `firmware` such that they fail when the code is
-//! wrong?
+//! `cargo xtask mutants`: are the tests of `shared` and `firmware` such that they fail when the
+//! code is wrong?
 //!
 //! cargo-mutants changes the code in every way it knows and runs the tests in process, without the
 //! random steps of the invariants, which alone take half a minute; `.cargo/mutants.toml` has those

@@ -206,9 +206,9 @@ impl Judged {
         faults.dead || is_unsure || self.has_noise || is_new
     }
 
-    /// Whether a servo may not have heard torque off, which is said again for 200 ms: it is dead, or
-    /// requests to it are corrupted, or meet an answer that comes late. Noise is the controller's
-    /// alone, and a stray byte comes with an answer.
+    /// Whether a servo may not have heard torque off, which is said again for 200 ms: it is dead,
+    /// or requests to it are corrupted, or meet an answer that comes late. Noise is the
+    /// controller's alone, and a stray byte comes with an answer.
     pub(super) fn may_be_deaf(&self, at: usize) -> bool {
         const SAID_MS: f64 = 250.0;
         let servos = &self.cm5.board.bus.servos;

@@ -59,13 +59,13 @@ pub(super) struct Options {
     pub speed_noise_rad_s: f64,
     /// Wander of the angles of balance in a sample, rad.
     pub offset_walk_rad: f64,
-    /// Largest deviation that is assumed of the start, in those of the settled filter. Gains for more
-    /// take the first readings, exact ones above all, for proof of speeds and offsets: the loop of
-    /// such gains is unstable under a delay that it does not know, and asks for hundreds of N m. Of
-    /// less, the angles of balance are found too late for starts far out. Of 60 robots with exact
-    /// sensors and 1 to 9 ms of unknown delay all stand with 1 to 3, at 5 ms two fifths with 5 and
-    /// none with 8; under everything at once, 300 robots, 92 % with 1, 97 % with 1.5, 99 % with 2, 3
-    /// and 5.
+    /// Largest deviation that is assumed of the start, in those of the settled filter. Gains for
+    /// more take the first readings, exact ones above all, for proof of speeds and offsets: the
+    /// loop of such gains is unstable under a delay that it does not know, and asks for hundreds of
+    /// N m. Of less, the angles of balance are found too late for starts far out. Of 60 robots with
+    /// exact sensors and 1 to 9 ms of unknown delay all stand with 1 to 3, at 5 ms two fifths with
+    /// 5 and none with 8; under everything at once, 300 robots, 92 % with 1, 97 % with 1.5, 99 %
+    /// with 2, 3 and 5.
     pub largest_start: f64,
     /// Whether the law is sliding mode with a boundary layer; else it is u = -K z.
     pub sliding: bool,

@@ -118,8 +118,8 @@ pub const OBSERVED: ObservedDesign = ObservedDesign {
     },
     options: Options {
         sliding: true,
-        // Its torques saturate: delays that it does not know do not fell it, and a bound costs it 6 %
-        // of the robots under everything at once.
+        // Its torques saturate: delays that it does not know do not fell it, and a bound costs it
+        // 6 % of the robots under everything at once.
         largest_start: f64::INFINITY,
         ..BEST.options
     },

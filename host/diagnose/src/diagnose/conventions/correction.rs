@@ -241,8 +241,8 @@ pub(super) fn time_units(model: &Model, spacing_s: f64) -> Vec<Correction> {
         return Vec::new();
     }
     let declared = model.log.time.unit;
-    // Samples so far apart are doubted whatever the column is called. Stamps are text, which no unit
-    // of numbers reads, and the other way round.
+    // Samples so far apart are doubted whatever the column is called. Stamps are text, which no
+    // unit of numbers reads, and the other way round.
     let is_text = |unit: &Unit| unit.name == "iso8601";
     if is_text(&declared) {
         return Vec::new();

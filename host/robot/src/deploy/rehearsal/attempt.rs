@@ -29,8 +29,8 @@ pub struct BalanceAttempt {
     pub stood_s: f64,
     /// Whether that is all of it.
     pub stands: bool,
-    /// Root mean square of the first link's angle from upright, rad, once 2 s have passed; none if it
-    /// did not stand so long.
+    /// Root mean square of the first link's angle from upright, rad, once 2 s have passed; none if
+    /// it did not stand so long.
     pub sway_rms_rad: Option<f64>,
     /// In which manner it stood at the end; none if it did not.
     pub manner: Option<Manner>,
