@@ -117,9 +117,10 @@ impl Balance {
         else {
             return Err(Stop::ServoLost);
         };
-        self.missed = match self.has_servos(servos) {
-            true => 0,
-            false => self.missed.saturating_add(1),
+        self.missed = if self.has_servos(servos) {
+            0
+        } else {
+            self.missed.saturating_add(1)
         };
         if self.missed >= LOST_AFTER {
             return Err(Stop::ServoLost);

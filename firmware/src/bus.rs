@@ -92,9 +92,10 @@ pub fn look<const N: usize>(answer: &Answer, id: u8) -> Result<([u8; N], ErrorBi
     let sum = bytes.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
     match rest.first_chunk::<N>() {
         Some(data) if rest.len() == N + 1 && usize::from(*length) == N + 2 && sum == WHOLE_SUM => {
-            match *from == id {
-                true => Ok((*data, ErrorBits(*error))),
-                false => Err(Failure::Stranger),
+            if *from == id {
+                Ok((*data, ErrorBits(*error)))
+            } else {
+                Err(Failure::Stranger)
             }
         }
         _ => Err(Failure::Garbled),

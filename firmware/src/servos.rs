@@ -237,9 +237,10 @@ impl Servos {
 
     /// Place of the servo that is read at this turn; beyond the last one, a place that is none.
     fn nth(&self, turn: u8) -> u8 {
-        match turn < self.count {
-            true => self.order.get(usize::from(turn)).copied().unwrap_or(turn),
-            false => turn,
+        if turn < self.count {
+            self.order.get(usize::from(turn)).copied().unwrap_or(turn)
+        } else {
+            turn
         }
     }
 

@@ -47,9 +47,10 @@ pub fn program(image: &[u8]) -> Result<&[u8], ImageFault> {
     if marked as usize != program.len() {
         return Err(ImageFault::Length { marked });
     }
-    match mark(program) == *found {
-        true => Ok(program),
-        false => Err(ImageFault::Check),
+    if mark(program) == *found {
+        Ok(program)
+    } else {
+        Err(ImageFault::Check)
     }
 }
 

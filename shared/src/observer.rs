@@ -178,9 +178,10 @@ impl Observer {
         let place = memory.all.iter_mut().skip(STATE);
         let read = readings.iter().zip(self.reading_places).zip(predicted);
         for (to, (((reading, places), predicted), is_heard)) in place.zip(read.zip(is_heard)) {
-            *to = match is_heard {
-                true => finer(*reading, places).saturating_sub(predicted),
-                false => 0,
+            *to = if is_heard {
+                finer(*reading, places).saturating_sub(predicted)
+            } else {
+                0
             };
         }
         match memory.all.first_chunk() {

@@ -138,9 +138,12 @@ impl Provenance {
     /// Of this run of `cargo xtask`, without the option that asks for the page.
     pub fn here() -> Self {
         let words = std::env::args().skip(1).filter(|word| word != "--write");
-        let words = words.map(|word| match word.contains(char::is_whitespace) {
-            true => format!("\"{word}\""),
-            false => word,
+        let words = words.map(|word| {
+            if word.contains(char::is_whitespace) {
+                format!("\"{word}\"")
+            } else {
+                word
+            }
         });
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Provenance {

@@ -57,9 +57,10 @@ impl HourLog {
     /// # Errors
     /// What the system or the library refuses.
     pub fn write(&self, file: &Path) -> Result<(), String> {
-        let written = match file.extension().is_some_and(|ending| ending == "parquet") {
-            true => self.write_parquet(file).map_err(|error| error.to_string()),
-            false => self.write_csv(file).map_err(|error| error.to_string()),
+        let written = if file.extension().is_some_and(|ending| ending == "parquet") {
+            self.write_parquet(file).map_err(|error| error.to_string())
+        } else {
+            self.write_csv(file).map_err(|error| error.to_string())
         };
         written.map_err(|why| format!("{}: {why}", file.display()))
     }

@@ -175,9 +175,10 @@ pub fn try_refit(case: &RefitCase) -> Result<RefitOutcome, Error> {
         is_pendulum: case.arm.is_none(),
         readings: case.readings.name(),
         diagnosed_rad,
-        diagnosed: match found_it {
-            true => beside(&stated(&diagnosis), &truth),
-            false => Vec::new(),
+        diagnosed: if found_it {
+            beside(&stated(&diagnosis), &truth)
+        } else {
+            Vec::new()
         },
         floor_rad: diagnosis.error.floor_rad,
         truth_rad: as_true,
@@ -193,9 +194,10 @@ fn split(bench: &Bench, model: &Model, dir: &Path) -> Result<Split, Error> {
         let path = dir.join(&log.name);
         std::fs::write(&path, &log.csv).map_err(|error| Error::file(&path, "write", error))?;
         let motions: Vec<Motion> = read(&[LogRequest::whole(path)], &model.log)?;
-        match log.held_out {
-            true => split.held_out.extend(motions),
-            false => split.training.extend(motions),
+        if log.held_out {
+            split.held_out.extend(motions)
+        } else {
+            split.training.extend(motions)
         }
     }
     Ok(split)

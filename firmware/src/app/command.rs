@@ -68,20 +68,24 @@ impl App {
                 Ok(()) => Outcome::Later,
                 Err(refusal) => Outcome::Answer(Err(refusal)),
             },
-            Command::PlanChunk { offset, bytes } => match self.is_armed() {
-                true => Outcome::Answer(Err(Refusal::Armed)),
-                false => match self.writer.chunk(offset, &bytes, sequence) {
-                    true => Outcome::Later,
-                    false => Outcome::Answer(Err(Refusal::BadPlan)),
-                },
-            },
-            Command::PlanStore { length, check } => match self.is_armed() {
-                true => Outcome::Answer(Err(Refusal::Armed)),
-                false => match self.writer.store(board, length, check, sequence) {
-                    true => Outcome::Later,
-                    false => Outcome::Answer(Err(Refusal::BadPlan)),
-                },
-            },
+            Command::PlanChunk { offset, bytes } => {
+                if self.is_armed() {
+                    Outcome::Answer(Err(Refusal::Armed))
+                } else if self.writer.chunk(offset, &bytes, sequence) {
+                    Outcome::Later
+                } else {
+                    Outcome::Answer(Err(Refusal::BadPlan))
+                }
+            }
+            Command::PlanStore { length, check } => {
+                if self.is_armed() {
+                    Outcome::Answer(Err(Refusal::Armed))
+                } else if self.writer.store(board, length, check, sequence) {
+                    Outcome::Later
+                } else {
+                    Outcome::Answer(Err(Refusal::BadPlan))
+                }
+            }
             Command::PlanRead { offset } => self.read_plan(board, offset),
             Command::FaultRead { back } => match self.read_fault(board, back) {
                 Ok(()) => Outcome::Quiet,

@@ -183,9 +183,10 @@ impl Servos {
     fn request(&self, place: u8) -> ReadPacket {
         let servo = self.servos.get(usize::from(place));
         let id = servo.map_or(0, |servo| servo.id);
-        let address = match self.is_read_whole(place) {
-            true => TORQUE_ENABLE.address,
-            false => PRESENT_POSITION.address,
+        let address = if self.is_read_whole(place) {
+            TORQUE_ENABLE.address
+        } else {
+            PRESENT_POSITION.address
         };
         read_packet(id, address, self.bytes_of(place))
     }

@@ -56,9 +56,10 @@ impl Regulator {
     pub fn duty_in_motion(&self, shaft: &Shaft) -> f64 {
         let duty = self.duty(shaft.angle_rad);
         let is_fast = shaft.speed_rad_s.abs() > self.speed_limit_rad_s;
-        match is_fast && duty * shaft.speed_rad_s > 0.0 {
-            true => 0.0,
-            false => duty,
+        if is_fast && duty * shaft.speed_rad_s > 0.0 {
+            0.0
+        } else {
+            duty
         }
     }
 

@@ -219,9 +219,10 @@ impl JointServos {
         });
         self.duty = duties.sum::<f64>() / regulators.len().max(1) as f64;
         let supply_v = own.first().map_or(0.0, |servo| servo.supply_v);
-        let share = match self.lag_s > 0.0 {
-            true => 1.0 - (-dt_s / self.lag_s).exp(),
-            false => 1.0,
+        let share = if self.lag_s > 0.0 {
+            1.0 - (-dt_s / self.lag_s).exp()
+        } else {
+            1.0
         };
         self.motor_duty += share * (self.duty - self.motor_duty);
         if !energised {

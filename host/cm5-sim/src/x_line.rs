@@ -267,9 +267,10 @@ impl Talk<'_> {
         let (free_ns, byte_ns) = (self.free_ns, byte_ns(self.baud));
         let first = answers.iter().map(|answer| answer.place).min();
         let begins = |answer: &Answer| {
-            let late_ns = match Some(answer.place) == first {
-                true => 0,
-                false => twin_late_ns(answer.place, byte_ns),
+            let late_ns = if Some(answer.place) == first {
+                0
+            } else {
+                twin_late_ns(answer.place, byte_ns)
             };
             let begin_ns = before_ns.max(free_ns + answer.wait_ns) + late_ns;
             let bytes = answer.bytes.clone().into_iter().zip(0..);

@@ -196,12 +196,11 @@ impl XServo {
             wanted_rad_s = wanted_rad_s.clamp(-profile_rad_s, profile_rad_s);
         }
         let shaft = &mut self.shaft;
-        match self.jammed {
-            true => shaft.speed_rad_s = 0.0,
-            false => {
-                let share = (dt_s / TIME_CONSTANT_S).min(1.0);
-                shaft.speed_rad_s += (wanted_rad_s - shaft.speed_rad_s) * share;
-            }
+        if self.jammed {
+            shaft.speed_rad_s = 0.0
+        } else {
+            let share = (dt_s / TIME_CONSTANT_S).min(1.0);
+            shaft.speed_rad_s += (wanted_rad_s - shaft.speed_rad_s) * share;
         }
         shaft.angle_rad += shaft.speed_rad_s * dt_s;
         self.measure();

@@ -256,9 +256,10 @@ impl Entries<'_> {
     }
 
     fn optional(&self, key: &'static str) -> Result<Option<Vec<f64>>> {
-        match self.has(key) {
-            true => self.numbers(key).map(Some),
-            false => Ok(None),
+        if self.has(key) {
+            self.numbers(key).map(Some)
+        } else {
+            Ok(None)
         }
     }
 
@@ -304,9 +305,10 @@ impl Entries<'_> {
         let number = value
             .and_then(Value::as_f64)
             .ok_or_else(|| self.wrong(index, key, value, "a number"))?;
-        match key == "timestamp" || number.abs() <= LARGEST_READING {
-            true => Ok(number),
-            false => Err(self.wrong(index, key, value, "a reading of at most 1000000")),
+        if key == "timestamp" || number.abs() <= LARGEST_READING {
+            Ok(number)
+        } else {
+            Err(self.wrong(index, key, value, "a reading of at most 1000000"))
         }
     }
 

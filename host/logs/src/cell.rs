@@ -36,9 +36,10 @@ pub(super) fn number(field: &str, separator: u8) -> Option<f64> {
 pub(super) fn decimal_comma(field: &str) -> Option<f64> {
     let begins =
         field.starts_with(['-', '+', ',']) || field.starts_with(|c: char| c.is_ascii_digit());
-    match begins && field.matches(',').count() == 1 && !field.contains('.') {
-        true => plain(&field.replace(',', ".")),
-        false => None,
+    if begins && field.matches(',').count() == 1 && !field.contains('.') {
+        plain(&field.replace(',', "."))
+    } else {
+        None
     }
 }
 

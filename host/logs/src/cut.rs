@@ -164,10 +164,10 @@ impl Cutter<'_> {
         let Some(ended) = self.open.take() else {
             return Ok(());
         };
-        let ends_s = match self.request.is_json() {
-            // Nothing of it is moved.
-            true => (0.0, 0.0),
-            false => ends_s(self.columns),
+        let ends_s = if self.request.is_json() {
+            (0.0, 0.0)
+        } else {
+            ends_s(self.columns)
         };
         let rows = rows_left(&ended.motion.time_s, ends_s);
         if rows < LEAST_ROWS {

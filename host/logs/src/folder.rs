@@ -27,9 +27,10 @@ pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
 pub fn unfolded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
     let mut all = Vec::new();
     for request in requests {
-        match request.path.is_dir() {
-            true => all.extend(of_folder(request)?),
-            false => all.push(request.clone()),
+        if request.path.is_dir() {
+            all.extend(of_folder(request)?)
+        } else {
+            all.push(request.clone())
         }
     }
     Ok(all)

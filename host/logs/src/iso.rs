@@ -23,9 +23,10 @@ pub(super) fn iso_ns(text: &str) -> Option<i64> {
     let zone = rest.find(['Z', 'z', '+', '-']).unwrap_or(rest.len());
     let (clock, zone) = rest.split_at(zone);
     let clock = clock.trim_end();
-    let clock = match has_shape(clock, "00:00") {
-        true => format!("{clock}:00"),
-        false => plain_clock(clock)?,
+    let clock = if has_shape(clock, "00:00") {
+        format!("{clock}:00")
+    } else {
+        plain_clock(clock)?
     };
     let date = date.replace('/', "-");
     if !has_shape(&date, "0000-00-00") {

@@ -32,9 +32,14 @@ impl Layout<'_> {
             cells.len() == words
                 && (fields(row, own).len() == 1 || cells.iter().all(|cell| is_value(cell)))
         };
-        match fields(self.names, own).len() == 1 && words > 1 && rows.peek().is_some() {
-            true if rows.all(blank) => BLANKS,
-            _ => own,
+        if fields(self.names, own).len() == 1
+            && words > 1
+            && rows.peek().is_some()
+            && rows.all(blank)
+        {
+            BLANKS
+        } else {
+            own
         }
     }
 

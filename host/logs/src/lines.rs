@@ -38,12 +38,11 @@ impl Lines {
     /// # Errors
     /// What the system refuses; bytes of another program's file, with what it is.
     pub fn open(path: &Path) -> Result<Self> {
-        let mut reader: Box<dyn BufRead + Send> = match is_standard_input(path) {
-            true => Box::new(standard_input()?),
-            false => {
-                let file = File::open(path).map_err(|source| Error::file(path, "read", source))?;
-                Box::new(BufReader::new(file))
-            }
+        let mut reader: Box<dyn BufRead + Send> = if is_standard_input(path) {
+            Box::new(standard_input()?)
+        } else {
+            let file = File::open(path).map_err(|source| Error::file(path, "read", source))?;
+            Box::new(BufReader::new(file))
         };
         let head = reader
             .fill_buf()

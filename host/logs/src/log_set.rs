@@ -54,12 +54,13 @@ impl LogSet {
             let fitted = fitted.find_map(|log| Some((log.request, log.same(&own)?)));
             if let Some((fitted, by)) = fitted {
                 let held = own.request;
-                let message = match fitted == held {
-                    true => format!("{held} is fitted and held out"),
-                    false => format!(
+                let message = if fitted == held {
+                    format!("{held} is fitted and held out")
+                } else {
+                    format!(
                         "{held} is held out, and shares rows with {fitted}, which is fitted{}",
                         by.words()
-                    ),
+                    )
                 };
                 return Err(Error::usage(message, NAME_ONCE));
             }

@@ -64,9 +64,10 @@ pub fn read_with_findings(
         let named = named(cut.motions, &name).map(|mut motion| {
             motion.source.sha256.clone_from(&facts.sha256);
             fill(&mut motion);
-            match request.is_json() {
-                true => motion,
-                false => motion.shifted(columns),
+            if request.is_json() {
+                motion
+            } else {
+                motion.shifted(columns)
             }
         });
         motions.extend(named);
@@ -117,9 +118,10 @@ fn fill(motion: &mut Motion) {
 fn hold(values: &mut [f64], first: f64) {
     let mut held = first;
     for value in values {
-        match value.is_nan() {
-            true => *value = held,
-            false => held = *value,
+        if value.is_nan() {
+            *value = held
+        } else {
+            held = *value
         }
     }
 }

@@ -217,9 +217,10 @@ impl Cells<'_> {
 
     /// The value, or not a number where there is none.
     fn gap_or(&self, quantity: &LogQuantity) -> Result<f64> {
-        match self.is_gap(&quantity.cell) {
-            true => Ok(f64::NAN),
-            false => self.value(quantity),
+        if self.is_gap(&quantity.cell) {
+            Ok(f64::NAN)
+        } else {
+            self.value(quantity)
         }
     }
 

@@ -74,13 +74,13 @@ impl ShortMotions {
 
     /// "line 2", "lines 2, 40-43 and of 3 more".
     fn lines(&self) -> String {
-        let named = self
-            .named
-            .iter()
-            .map(|(first, last, _)| match first == last {
-                true => first.to_string(),
-                false => format!("{first}-{last}"),
-            });
+        let named = self.named.iter().map(|(first, last, _)| {
+            if first == last {
+                first.to_string()
+            } else {
+                format!("{first}-{last}")
+            }
+        });
         let named = named.collect::<Vec<_>>().join(", ");
         let several = self.motions > 1 || self.named.iter().any(|(first, last, _)| first < last);
         let line = if several { "lines" } else { "line" };

@@ -131,9 +131,10 @@ impl Item {
         four.get_mut(..bytes.len())?.copy_from_slice(bytes);
         let low = u32::from_le_bytes(four);
         let unused = 32 - 8 * u32::from(self.size);
-        Some(match self.is_signed {
-            true => ((low << unused) as i32) >> unused,
-            false => i32::try_from(low).unwrap_or(i32::MAX),
+        Some(if self.is_signed {
+            ((low << unused) as i32) >> unused
+        } else {
+            i32::try_from(low).unwrap_or(i32::MAX)
         })
     }
 

@@ -25,9 +25,10 @@ const INTERRUPT_NS: u64 = 130_000;
 pub fn byte_start_ns(ready_ns: u64, serial: u64) -> u64 {
     let phase_ns = ((serial * 2_654_435_761) >> 8) % INTERRUPT_PERIOD_NS;
     let into_ns = (ready_ns + INTERRUPT_PERIOD_NS - phase_ns) % INTERRUPT_PERIOD_NS;
-    match into_ns < INTERRUPT_NS {
-        true => ready_ns + INTERRUPT_NS - into_ns,
-        false => ready_ns,
+    if into_ns < INTERRUPT_NS {
+        ready_ns + INTERRUPT_NS - into_ns
+    } else {
+        ready_ns
     }
 }
 

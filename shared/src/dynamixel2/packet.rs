@@ -32,9 +32,10 @@ impl<'a> Packet<'a> {
             return Err(PacketError::Length);
         }
         let (covered, crc) = bytes.split_at(bytes.len() - 2);
-        match crc16(0, covered).to_le_bytes() == crc {
-            true => Ok(Packet(bytes)),
-            false => Err(PacketError::Crc),
+        if crc16(0, covered).to_le_bytes() == crc {
+            Ok(Packet(bytes))
+        } else {
+            Err(PacketError::Crc)
         }
     }
 

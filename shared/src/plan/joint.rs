@@ -106,9 +106,10 @@ impl Joint {
         if input != 0 && input.unsigned_abs() < self.least.unsigned_abs() {
             // The slew's limit lies in the dead zone: nothing, or as little as passes on the side
             // it comes from.
-            input = match (low..=high).contains(&0) {
-                true => 0,
-                false => self.beyond_least(last.signum()),
+            input = if (low..=high).contains(&0) {
+                0
+            } else {
+                self.beyond_least(last.signum())
             };
         }
         applied.input = input;

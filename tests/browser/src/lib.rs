@@ -154,9 +154,10 @@ impl Browser {
                 _ => {}
             }
             if said["id"] == self.calls {
-                return match said["error"].is_null() {
-                    true => Ok(said["result"].clone()),
-                    false => Err(said["error"].clone()),
+                return if said["error"].is_null() {
+                    Ok(said["result"].clone())
+                } else {
+                    Err(said["error"].clone())
                 };
             }
         }

@@ -108,9 +108,10 @@ fn law_share(elf: &Path, states: usize, seed: u64, first: usize) -> LawRun {
             let (u, cycles) = law.control(&x);
             run.states += 1;
             run.different += usize::from(u != control(&table, &x));
-            let place = match shift == other {
-                true => &mut run.cycles[usize::from(shift)],
-                false => &mut run.mixed,
+            let place = if shift == other {
+                &mut run.cycles[usize::from(shift)]
+            } else {
+                &mut run.mixed
             };
             *place = union(*place, Some((cycles, cycles)));
         }

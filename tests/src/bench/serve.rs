@@ -42,9 +42,10 @@ pub fn serve(
             }
             (skipped_ms, said_s) = (0.0, now_s);
         }
-        let wait = match behind_ms < 1.0 {
-            true => Duration::from_millis(1),
-            false => Duration::ZERO,
+        let wait = if behind_ms < 1.0 {
+            Duration::from_millis(1)
+        } else {
+            Duration::ZERO
         };
         let count = pty.receive(&mut bytes, wait).map_err(failed)?;
         // A program at another speed understands nothing, nor is it understood.

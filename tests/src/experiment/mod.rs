@@ -262,9 +262,10 @@ fn words(proposal: &ExperimentProposal) -> String {
     }
     let measured = proposal.measure.iter();
     parts.extend(measured.map(|measured| format!("measure {}", measured.path)));
-    match parts.is_empty() {
-        true => "nothing".to_string(),
-        false => parts.join("; "),
+    if parts.is_empty() {
+        "nothing".to_string()
+    } else {
+        parts.join("; ")
     }
 }
 
@@ -283,9 +284,10 @@ fn sets(diagnosis: &Diagnosis) -> Vec<String> {
     let text = |(effects, wrong): (&Vec<FittedEffect>, &Vec<_>)| {
         let wrong: &Vec<handstand::diagnose::WrongValue> = wrong;
         let paths = wrong.iter().map(|wrong| wrong.fitted.path.clone());
-        let parts: Vec<String> = match effects.is_empty() {
-            true => paths.collect(),
-            false => effects.iter().map(FittedEffect::address).collect(),
+        let parts: Vec<String> = if effects.is_empty() {
+            paths.collect()
+        } else {
+            effects.iter().map(FittedEffect::address).collect()
         };
         parts.join(" + ")
     };

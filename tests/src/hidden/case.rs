@@ -163,9 +163,10 @@ fn written(bench: &Bench, dir: &Path) -> Result<Files, String> {
     };
     for log in &bench.logs {
         let path = write(&log.name, &log.csv)?;
-        match log.held_out {
-            true => files.held_out.push(path),
-            false => files.fit.push(path),
+        if log.held_out {
+            files.held_out.push(path)
+        } else {
+            files.fit.push(path)
         }
     }
     Ok(files)

@@ -110,16 +110,18 @@ fn last(
             return Ok(Some(good));
         }
         let next = (good + STRIDE).min(STEPS);
-        match holds(next)? {
-            true => good = next,
-            false => break next,
+        if holds(next)? {
+            good = next
+        } else {
+            break next;
         }
     };
     while bad - good > 1 {
         let middle = good + (bad - good) / 2;
-        match holds(middle)? {
-            true => good = middle,
-            false => bad = middle,
+        if holds(middle)? {
+            good = middle
+        } else {
+            bad = middle
         }
     }
     Ok(Some(good))

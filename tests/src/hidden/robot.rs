@@ -96,9 +96,10 @@ fn written(case: &Case, dir: &Path) -> handstand::Result<Files> {
             &excite(&plan(kinds, 10 * case.seed + number))?.to_csv(),
         )?;
         record(&robot, &goals, &log, case.seed)?;
-        match held_out {
-            true => files.held_out.push(log),
-            false => files.fit.push(log),
+        if held_out {
+            files.held_out.push(log)
+        } else {
+            files.fit.push(log)
         }
     }
     Ok(files)

@@ -118,12 +118,11 @@ fn name(path: &str) -> Option<String> {
 /// Names of an explanation: its effects, or the values that explain without any.
 fn set(explanation: &Json) -> Vec<String> {
     let effects = effects(&explanation["effects"]);
-    match effects.is_empty() {
-        false => effects.iter().map(SaidEffect::address).collect(),
-        true => {
-            let values = values(&explanation["wrong_values"]);
-            values.iter().filter_map(|(path, _)| name(path)).collect()
-        }
+    if !effects.is_empty() {
+        effects.iter().map(SaidEffect::address).collect()
+    } else {
+        let values = values(&explanation["wrong_values"]);
+        values.iter().filter_map(|(path, _)| name(path)).collect()
     }
 }
 

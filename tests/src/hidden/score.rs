@@ -61,9 +61,10 @@ pub(super) fn values(hidden: &[HiddenEffect], said: &Said) -> Vec<Value> {
 
 /// Whether the interval holds the truth; a phase is known but for whole turns.
 fn covers(key: &str, value: f64, (low, high): (f64, f64), truth: f64) -> bool {
-    let truth = match key.contains("phase") {
-        true => value + (truth - value + PI).rem_euclid(TAU) - PI,
-        false => truth,
+    let truth = if key.contains("phase") {
+        value + (truth - value + PI).rem_euclid(TAU) - PI
+    } else {
+        truth
     };
     (low..=high).contains(&truth)
 }

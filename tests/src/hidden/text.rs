@@ -122,9 +122,10 @@ fn family_cells(row: &FamilyRow) -> Vec<String> {
             missed.push(what);
         }
     }
-    cells.push(match missed.is_empty() {
-        true => "met".to_string(),
-        false => format!("MISSED: {}", missed.join(", ")),
+    cells.push(if missed.is_empty() {
+        "met".to_string()
+    } else {
+        format!("MISSED: {}", missed.join(", "))
     });
     cells
 }
@@ -183,9 +184,10 @@ fn hidden(outcome: &Outcome) -> String {
 fn said(outcome: &Outcome) -> String {
     let sets = outcome.sets.iter().filter(|set| !set.is_empty());
     let sets: Vec<String> = sets.map(|set| set.join(" + ")).collect();
-    match sets.is_empty() {
-        true => outcome.verdict.clone(),
-        false => format!("{} {}", outcome.verdict, sets.join(" | ")),
+    if sets.is_empty() {
+        outcome.verdict.clone()
+    } else {
+        format!("{} {}", outcome.verdict, sets.join(" | "))
     }
 }
 

@@ -74,9 +74,10 @@ fn diagnosed(case: &Case, files: &Files) -> handstand::Result<Outcome> {
         family: case.family,
         kinds: case.hidden.iter().map(|kind| kind.to_string()).collect(),
         seed: case.seed,
-        values: match answer == Answer::Right && case.family != Family::Outside {
-            true => values(&files.effects, &said),
-            false => Vec::new(),
+        values: if answer == Answer::Right && case.family != Family::Outside {
+            values(&files.effects, &said)
+        } else {
+            Vec::new()
         },
         answer,
         hidden,

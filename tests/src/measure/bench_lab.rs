@@ -82,9 +82,10 @@ fn tables(steps: &[Step]) -> Measured {
 }
 
 fn limit(limit_ms: f64) -> String {
-    match limit_ms.is_finite() {
-        true => format!("{limit_ms:.0}"),
-        false => "-".into(),
+    if limit_ms.is_finite() {
+        format!("{limit_ms:.0}")
+    } else {
+        "-".into()
     }
 }
 

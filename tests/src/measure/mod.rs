@@ -94,9 +94,10 @@ impl Chores {
             #[cfg(unix)]
             Chore::Virtual(args) => virtual_cm5::run(args),
         };
-        match well {
-            true => ExitCode::SUCCESS,
-            false => ExitCode::FAILURE,
+        if well {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
         }
     }
 }

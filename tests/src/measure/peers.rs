@@ -321,11 +321,12 @@ impl Bench {
         }
         let there = |peer: &str| !theirs[peer].is_null();
         for (pairs, (peer, states, target)) in pairs.iter().zip(targets) {
-            match there(peer) {
-                true => table.faster(&format!("DLQR, {states} states: {peer}"), pairs, target),
-                false => table
+            if there(peer) {
+                table.faster(&format!("DLQR, {states} states: {peer}"), pairs, target)
+            } else {
+                table
                     .left_out
-                    .push(format!("{peer} is not installed: its rows are left out")),
+                    .push(format!("{peer} is not installed: its rows are left out"))
             }
         }
         let ours = dlqr_off().unwrap_or(f64::NAN);

@@ -94,9 +94,10 @@ fn table(demos: &[RobotDemo]) -> Table {
 fn line(demo: &RobotDemo) -> [String; 5] {
     let effects = demo.effects.chunk_by(|a, b| a.address == b.address);
     let effects: Vec<String> = effects.map(|values| effect(&values[0])).collect();
-    let named = match demo.named {
-        true => "yes".to_string(),
-        false => format!("NO: {}", demo.added.join(", ")),
+    let named = if demo.named {
+        "yes".to_string()
+    } else {
+        format!("NO: {}", demo.added.join(", "))
     };
     [
         demo.seed.to_string(),
@@ -118,8 +119,9 @@ fn attempt(attempt: &BalanceAttempt) -> String {
     let sway = attempt
         .sway_rms_rad
         .map_or(String::new(), |rad| format!(", {:.0} mrad", 1e3 * rad));
-    match attempt.stands {
-        true => format!("stands{sway}"),
-        false => format!("{:.1} s{sway}", attempt.stood_s),
+    if attempt.stands {
+        format!("stands{sway}")
+    } else {
+        format!("{:.1} s{sway}", attempt.stood_s)
     }
 }

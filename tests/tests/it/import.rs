@@ -111,9 +111,10 @@ fn urdf(draws: &mut Draws, slides: bool) -> (String, Vec<String>) {
             "revolute"
         };
         let across = format!("0 {} {}", draws.next(), draws.next() + 1.5);
-        let (axis, kind) = match slides && draws.next() > 0.0 {
-            true => (across.as_str(), "prismatic"),
-            false => (axis, kind),
+        let (axis, kind) = if slides && draws.next() > 0.0 {
+            (across.as_str(), "prismatic")
+        } else {
+            (axis, kind)
         };
         let turn = format!("{} 0 0", 3.0 * draws.next());
         joint(
@@ -174,9 +175,10 @@ fn mjcf(draws: &mut Draws, slides: bool) -> (String, Vec<String>) {
         };
         let across = format!("{} 0 {}\" type=\"slide", draws.next(), draws.next() + 1.5);
         // Degrees, or metres.
-        let (axis, most) = match slides && draws.next() > 0.0 {
-            true => (across.as_str(), 0.3),
-            false => (axis, 20.0),
+        let (axis, most) = if slides && draws.next() > 0.0 {
+            (across.as_str(), 0.3)
+        } else {
+            (axis, 20.0)
         };
         let shape = match index % 4 {
             0 => format!(

@@ -63,12 +63,13 @@ pub fn run(args: &Args) -> bool {
             eprintln!("{name}: the corpus could not be reduced; it is as it was");
         }
     }
-    match failed.is_empty() {
-        true => println!("\nNo target failed."),
-        false => println!(
+    if failed.is_empty() {
+        println!("\nNo target failed.")
+    } else {
+        println!(
             "\nFailed: {}. The cases lie in target/fuzz/found; copy each into tests/fuzz/corpus/TARGET.",
             failed.join(", ")
-        ),
+        )
     }
     failed.is_empty()
 }

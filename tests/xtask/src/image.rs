@@ -87,9 +87,10 @@ fn keeps_budget(args: &Args, image: &Image) -> bool {
     if args.plan.is_some() {
         return true;
     }
-    let checked = match args.accept_size {
-        true => Budget::accept(image).map(|()| Vec::new()),
-        false => Budget::last().map(|last| last.exceeded(image)),
+    let checked = if args.accept_size {
+        Budget::accept(image).map(|()| Vec::new())
+    } else {
+        Budget::last().map(|last| last.exceeded(image))
     };
     let said = checked.unwrap_or_else(|why| vec![why]);
     said.iter().for_each(|line| eprintln!("{line}"));

@@ -138,8 +138,9 @@ fn measure(name: &str, words: &[OsString]) -> ExitCode {
 }
 
 fn code(well: bool) -> ExitCode {
-    match well {
-        true => ExitCode::SUCCESS,
-        false => ExitCode::FAILURE,
+    if well {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
     }
 }

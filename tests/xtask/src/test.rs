@@ -131,12 +131,11 @@ struct Tally {
 
 impl Tally {
     fn count(&mut self, well: bool, name: &str) {
-        match well {
-            true => self.passed += 1,
-            false => {
-                self.failed += 1;
-                self.failures.push(name.into());
-            }
+        if well {
+            self.passed += 1
+        } else {
+            self.failed += 1;
+            self.failures.push(name.into());
         }
     }
 

@@ -72,15 +72,16 @@ impl HeldReadings {
             return;
         }
         let shown = percent(share);
-        let what = match share < SLOW_SENSOR {
-            true => format!(
+        let what = if share < SLOW_SENSOR {
+            format!(
                 "{name} repeats the reading before in {shown} of the rows in motion, and catches \
-                 up after: frames were lost"
-            ),
-            false => format!(
+             up after: frames were lost"
+            )
+        } else {
+            format!(
                 "{name} repeats the reading before in {shown} of the rows in motion: its sensor is \
-                 slower than the log"
-            ),
+             slower than the log"
+            )
         };
         let remedy = "leave the field empty, or `nan`, where nothing new was read: a held reading \
                       is wrong by the speed times its age";

@@ -20,26 +20,23 @@ pub fn links(
     } = bench;
     let why = "the log says so";
     let joint = &columns.joints[0];
-    let link = match arm_mass_kg > 0.0 {
-        true => {
-            let rod = format!("an even rod of {length_m} m and {arm_mass_kg} kg");
-            guesses.push(Guess::new("link", rod, why));
-            let weight = format!("the key \"mass\" of each log, {mass_kg} kg here");
-            guesses.push(Guess::new("payload", weight, why));
-            columns.payload = Some(PayloadGuess {
-                key: "mass",
-                at_m: length_m,
-            });
-            link(joint, length_m, arm_mass_kg)
-        }
-        false => {
-            let weight = format!("{mass_kg} kg at {length_m} m");
-            guesses.push(Guess::new("link", weight, why));
-            LinkPlan {
-                com_m: length_m,
-                inertia_kg_m2: Some(0.0),
-                ..link(joint, length_m, mass_kg)
-            }
+    let link = if arm_mass_kg > 0.0 {
+        let rod = format!("an even rod of {length_m} m and {arm_mass_kg} kg");
+        guesses.push(Guess::new("link", rod, why));
+        let weight = format!("the key \"mass\" of each log, {mass_kg} kg here");
+        guesses.push(Guess::new("payload", weight, why));
+        columns.payload = Some(PayloadGuess {
+            key: "mass",
+            at_m: length_m,
+        });
+        link(joint, length_m, arm_mass_kg)
+    } else {
+        let weight = format!("{mass_kg} kg at {length_m} m");
+        guesses.push(Guess::new("link", weight, why));
+        LinkPlan {
+            com_m: length_m,
+            inertia_kg_m2: Some(0.0),
+            ..link(joint, length_m, mass_kg)
         }
     };
     guesses.push(Guess::new(

@@ -69,10 +69,7 @@ pub fn coding(values: &[f64], time_s: &[f64], angle_rad: Option<&[f64]>) -> Opti
 
 fn decoded(values: &[f64], bit: u32) -> Vec<f64> {
     let sign = f64::from(1u32 << bit);
-    let plain = |value: &f64| match *value >= sign {
-        true => sign - value,
-        false => *value,
-    };
+    let plain = |value: &f64| if *value >= sign { sign - value } else { *value };
     values.iter().map(plain).collect()
 }
 

@@ -37,9 +37,10 @@ use values::{median, time_unit};
 /// The values of a log's time column in s, its unit guessed from its steps.
 pub fn time_si(log: &RawLog, time: usize) -> Vec<f64> {
     let column = &log.columns[time];
-    let unit = match log.iso[time] {
-        true => "s",
-        false => time_unit(column),
+    let unit = if log.iso[time] {
+        "s"
+    } else {
+        time_unit(column)
     };
     let factor = Unit::named(unit, None).map_or(1.0, |unit| unit.si);
     column.iter().map(|value| factor * value).collect()

@@ -121,9 +121,10 @@ pub fn slope_correlation(time_s: &[f64], angle_rad: &[f64], values: &[f64]) -> f
         square += slope * slope;
         own += value * value;
     }
-    match square * own > 0.0 {
-        true => cross / (square * own).sqrt(),
-        false => 0.0,
+    if square * own > 0.0 {
+        cross / (square * own).sqrt()
+    } else {
+        0.0
     }
 }
 

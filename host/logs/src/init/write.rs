@@ -106,9 +106,10 @@ pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
 /// the angle. A gyro of a link farther out reads another rate than its joint's.
 fn speed_key(index: usize, joint: &JointGuess) -> &'static str {
     let is_gyro = |column: &ColumnGuess| column.name.to_lowercase().contains("gyro");
-    match joint.velocity.as_ref().is_some_and(is_gyro) {
-        true if index == 0 && joint.position.is_some() => RateSensor::Gyro.key(),
-        _ => "velocity",
+    if joint.velocity.as_ref().is_some_and(is_gyro) && index == 0 && joint.position.is_some() {
+        RateSensor::Gyro.key()
+    } else {
+        "velocity"
     }
 }
 

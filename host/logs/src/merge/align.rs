@@ -116,9 +116,10 @@ fn peak(a: &[f64], b: &[f64], same_way: bool) -> Peak {
             return 0.0;
         }
         let correlation = raw[lag.rem_euclid(size as i64) as usize] / scale.sqrt();
-        match same_way {
-            true => correlation.max(0.0),
-            false => correlation,
+        if same_way {
+            correlation.max(0.0)
+        } else {
+            correlation
         }
     };
     let values: Vec<f64> = lags.clone().map(at).collect();
@@ -132,9 +133,10 @@ fn peak(a: &[f64], b: &[f64], same_way: bool) -> Peak {
     let beyond = |k: &usize| left.is_some_and(|l| *k < l) || right.is_some_and(|r| *k > r);
     let rival = (0..values.len()).filter(beyond).map(|k| values[k].abs());
     let bend = height(best.wrapping_sub(1)) - 2.0 * height(best) + height(best + 1);
-    let fraction = match bend < 0.0 {
-        true => 0.5 * (height(best.wrapping_sub(1)) - height(best + 1)) / bend,
-        false => 0.0,
+    let fraction = if bend < 0.0 {
+        0.5 * (height(best.wrapping_sub(1)) - height(best + 1)) / bend
+    } else {
+        0.0
     };
     Peak {
         lag: (lags.start + best as i64) as f64 + fraction.clamp(-0.5, 0.5),

@@ -78,9 +78,10 @@ pub(super) fn scientific(value: f64) -> String {
 
 /// A time with all its digits, unless it is too large to be one.
 pub(super) fn short(time_s: f64) -> String {
-    match time_s.abs() < 1e15 {
-        true => time_s.to_string(),
-        false => format!("{time_s:e}"),
+    if time_s.abs() < 1e15 {
+        time_s.to_string()
+    } else {
+        format!("{time_s:e}")
     }
 }
 

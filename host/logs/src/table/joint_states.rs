@@ -124,9 +124,10 @@ impl JointStates {
         let count = stamps.len();
         let own_stamps = rows.stamp_ns.clone();
         for (prefix, topic) in std::iter::once((String::new(), rows)).chain(others) {
-            let places = match prefix.is_empty() {
-                true => (0..count).map(Some).collect(),
-                false => held_at(&topic.stamp_ns, &own_stamps),
+            let places = if prefix.is_empty() {
+                (0..count).map(Some).collect()
+            } else {
+                held_at(&topic.stamp_ns, &own_stamps)
             };
             for (joint, columns) in topic.joints.iter().zip(topic.columns) {
                 for (quantity, column) in QUANTITIES.iter().zip(columns) {

@@ -146,9 +146,10 @@ impl TableFile<'_> {
 /// the first, for then they are times.
 pub(super) fn from_integers(values: &[i64]) -> Vec<f64> {
     const EXACT: u64 = 1 << 53;
-    let first = match values.iter().any(|value| value.unsigned_abs() > EXACT) {
-        true => values[0],
-        false => 0,
+    let first = if values.iter().any(|value| value.unsigned_abs() > EXACT) {
+        values[0]
+    } else {
+        0
     };
     values
         .iter()

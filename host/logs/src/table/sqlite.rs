@@ -59,13 +59,14 @@ impl<'a> Sqlite<'a> {
             return Err("its page size is none");
         }
         let usable = page_size - usize::from(bytes[20]);
-        match usable >= 480 {
-            true => Ok(Sqlite {
+        if usable >= 480 {
+            Ok(Sqlite {
                 bytes,
                 page_size,
                 usable,
-            }),
-            false => Err("its pages have no room"),
+            })
+        } else {
+            Err("its pages have no room")
         }
     }
 
@@ -158,21 +159,21 @@ impl<'a> Sqlite<'a> {
     /// A row's bytes: those on its page, and those it goes on with.
     fn payload(&self, page: &'a [u8], at: usize, length: usize) -> Result<Vec<u8>, Damage> {
         let most = self.usable - 35;
-        let here = match length <= most {
-            true => length,
-            false => {
-                let least = (self.usable - 12) * 32 / 255 - 23;
-                let fitting = least + (length - least) % (self.usable - 4);
-                if fitting <= most { fitting } else { least }
-            }
+        let here = if length <= most {
+            length
+        } else {
+            let least = (self.usable - 12) * 32 / 255 - 23;
+            let fitting = least + (length - least) % (self.usable - 4);
+            if fitting <= most { fitting } else { least }
         };
         let mut payload = page
             .get(at..at + here)
             .ok_or("a row ends beyond its page")?
             .to_vec();
-        let mut next = match here < length {
-            true => long(page, at + here)?,
-            false => 0,
+        let mut next = if here < length {
+            long(page, at + here)?
+        } else {
+            0
         };
         while payload.len() < length {
             let page = self.page(next)?;

@@ -76,10 +76,7 @@ fn gyro_corners(seconds: f64) -> Row {
             ..corner(1.0, [1.0; 3])
         };
         let (mut float, mut fixed) = (Float::new(&plan, &machine), Fixed::new(&plan));
-        let law: &mut dyn HostLaw = match is_float {
-            true => &mut float,
-            false => &mut fixed,
-        };
+        let law: &mut dyn HostLaw = if is_float { &mut float } else { &mut fixed };
         let timing = Source::Gyro.timing();
         let run = balance_by_host(law, &conditions, &timing, Source::Gyro, seconds);
         run.stood_s >= seconds - 1e-6

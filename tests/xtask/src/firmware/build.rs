@@ -62,12 +62,13 @@ pub fn find_built() -> Result<Built, String> {
         ));
     }
     let made_from = std::fs::read_to_string(folder.join(SOURCES)).unwrap_or_default();
-    match made_from == fingerprint() {
-        true => Ok(built),
-        false => Err(format!(
+    if made_from == fingerprint() {
+        Ok(built)
+    } else {
+        Err(format!(
             "{} is older than its sources: `cargo xtask firmware` builds it again",
             built.elf.display()
-        )),
+        ))
     }
 }
 

@@ -58,15 +58,16 @@ pub fn run(args: &Args) -> bool {
         .filter(|(_, verdict)| *verdict != Verdict::Caught)
         .map(|(name, _)| *name)
         .collect();
-    let made = match args.listed {
-        true => None,
-        false => match of_cargo_mutants(args.shard.as_deref(), args.since.as_deref()) {
+    let made = if args.listed {
+        None
+    } else {
+        match of_cargo_mutants(args.shard.as_deref(), args.since.as_deref()) {
             Ok(made) => Some(made),
             Err(why) => {
                 eprintln!("{why}");
                 return false;
             }
-        },
+        }
     };
     show(args, &listed, made.as_ref(), begun.elapsed());
     survived.is_empty() && made.is_none_or(|made| made.share() >= CAUGHT)

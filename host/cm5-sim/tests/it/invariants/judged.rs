@@ -183,9 +183,10 @@ impl Judged {
             code < low || code > high
         });
         let now_ms = self.cm5.now_ms();
-        self.out_ms = match out {
-            true => Some(self.out_ms.unwrap_or(now_ms)),
-            false => None,
+        self.out_ms = if out {
+            Some(self.out_ms.unwrap_or(now_ms))
+        } else {
+            None
         };
     }
 

@@ -76,11 +76,10 @@ impl Relations {
                 "was the drive saturated, stuck, or off? Are the columns named right?",
             )
         } else if !(0.8..1.25).contains(&slope) {
-            let guess = match (45.0..72.0).contains(&slope.max(1.0 / slope)) {
-                true => "degrees on one side, radians on the other?",
-                false => {
-                    "a wrong unit, count per turn or gear ratio, or a drive too weak for its goal?"
-                }
+            let guess = if (45.0..72.0).contains(&slope.max(1.0 / slope)) {
+                "degrees on one side, radians on the other?"
+            } else {
+                "a wrong unit, count per turn or gear ratio, or a drive too weak for its goal?"
             };
             (
                 format!("{measured} moves {slope:.3} times as far as {goal}: {guess}"),

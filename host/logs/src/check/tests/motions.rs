@@ -146,9 +146,10 @@ fn swing(lost: impl Fn(usize) -> bool) -> Motion {
     let step = 1.5e-3;
     for k in 0..log.len() {
         let angle = 0.6 * (6.0 * log.time_s[k]).sin();
-        log.position_rad[0][k] = match lost(k) && k > 0 {
-            true => log.position_rad[0][k - 1],
-            false => step * (angle / step).round(),
+        log.position_rad[0][k] = if lost(k) && k > 0 {
+            log.position_rad[0][k - 1]
+        } else {
+            step * (angle / step).round()
         };
     }
     log

@@ -7,9 +7,12 @@ fn changed(column: usize, change: impl Fn(usize, &str) -> String) -> String {
     let good = text(&good());
     let lines = good.lines().enumerate().map(|(index, line)| {
         let fields = line.split(',').enumerate();
-        let fields = fields.map(|(at, field)| match at == column && index > 0 {
-            true => change(index, field),
-            false => field.to_string(),
+        let fields = fields.map(|(at, field)| {
+            if at == column && index > 0 {
+                change(index, field)
+            } else {
+                field.to_string()
+            }
         });
         fields.collect::<Vec<_>>().join(",")
     });

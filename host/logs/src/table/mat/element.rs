@@ -129,8 +129,9 @@ impl<'a> MatElement<'a> {
 fn word(bytes: &[u8], big_endian: bool) -> u32 {
     let mut four = [0; 4];
     four.copy_from_slice(bytes);
-    match big_endian {
-        true => u32::from_be_bytes(four),
-        false => u32::from_le_bytes(four),
+    if big_endian {
+        u32::from_be_bytes(four)
+    } else {
+        u32::from_le_bytes(four)
     }
 }

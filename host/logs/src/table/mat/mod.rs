@@ -27,9 +27,10 @@ const REMEDY: &str = "save it from MATLAB by save(\"log.mat\", .., \"-v7\"), fro
                       scipy.io.savemat";
 
 pub(super) fn read(bytes: Bytes, file: TableFile, time: Option<&str>) -> Result<LogTable> {
-    let variables = match is_version73(&bytes) {
-        true => version73::read(bytes, file)?,
-        false => version5::read(&bytes, file)?,
+    let variables = if is_version73(&bytes) {
+        version73::read(bytes, file)?
+    } else {
+        version5::read(&bytes, file)?
     };
     let (what, remedy) = variables.without_columns();
     let table = variables

@@ -34,9 +34,10 @@ impl MatVariables {
     /// More than a table may have.
     pub fn spend(&mut self, count: usize) -> Result<(), Broken> {
         self.cells = self.cells.saturating_add(count);
-        match self.cells > MOST_CELLS {
-            true => Err("more than 200 million numbers"),
-            false => Ok(()),
+        if self.cells > MOST_CELLS {
+            Err("more than 200 million numbers")
+        } else {
+            Ok(())
         }
     }
 

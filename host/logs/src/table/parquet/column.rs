@@ -63,9 +63,10 @@ pub(super) fn columns(source: &ParquetSource, leaf: &ParquetLeaf, index: usize) 
             }
         }?;
     }
-    let values = match whole.is_empty() {
-        true => real,
-        false => meant(&whole, meaning),
+    let values = if whole.is_empty() {
+        real
+    } else {
+        meant(&whole, meaning)
     };
     if leaf.element_level.is_none() {
         return Ok(Ok(vec![values]));

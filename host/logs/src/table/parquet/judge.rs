@@ -120,9 +120,10 @@ impl Description<'_> {
             15 => self.varint()?,
             count => count.into(),
         };
-        match count <= self.0.len() as u64 {
-            true => Ok((head & 0xf, count)),
-            false => Err(CUT),
+        if count <= self.0.len() as u64 {
+            Ok((head & 0xf, count))
+        } else {
+            Err(CUT)
         }
     }
 

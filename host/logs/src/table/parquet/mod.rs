@@ -64,9 +64,10 @@ pub(super) fn read(bytes: Bytes, file: TableFile) -> crate::error::Result<LogTab
     if table.columns.iter().any(|column| column.len() != rows) {
         return Err(refused(broken("its columns hold different counts of rows")));
     }
-    match table.names.is_empty() {
-        true => Err(file.wrong("no column holds numbers", "save time and angles as numbers")),
-        false => Ok(table),
+    if table.names.is_empty() {
+        Err(file.wrong("no column holds numbers", "save time and angles as numbers"))
+    } else {
+        Ok(table)
     }
 }
 

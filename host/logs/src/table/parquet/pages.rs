@@ -229,8 +229,9 @@ fn at_most(unpacked: impl Read, most: usize) -> Result<Vec<u8>> {
     let mut plain = Vec::new();
     let read = unpacked.take(most as u64 + 1).read_to_end(&mut plain);
     read.map_err(failed)?;
-    match plain.len() <= most {
-        true => Ok(plain),
-        false => Err(broken("a page is longer than it says")),
+    if plain.len() <= most {
+        Ok(plain)
+    } else {
+        Err(broken("a page is longer than it says"))
     }
 }
