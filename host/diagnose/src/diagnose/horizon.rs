@@ -56,9 +56,9 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Chooses the longest horizon over which a leading set leaves nothing but noise, where none
-    /// does over the one that was chosen for single effects. All that were evaluated are evaluated
-    /// again over it.
+    /// Chooses the longest horizon over which a leading set leaves nothing but noise: a longer one
+    /// than was chosen for single effects, or, where all are lost over that, a shorter one. All
+    /// that were evaluated are evaluated again over it.
     ///
     /// Single effects that lose a long run say nothing of sets that follow it; and the more windows
     /// there are, the more begin where the samples around them tell the start state badly: in a
@@ -70,8 +70,7 @@ impl Evaluator<'_> {
             all.filter(|h| h.evaluation.is_some()).cloned().collect();
         leaders.sort_by(|a, b| a.deciding_mean().total_cmp(&b.deciding_mean()));
         leaders.truncate(LEADERS);
-        let settled = leaders.iter().any(|leader| self.at_noise_floor(leader));
-        if self.horizon_given || settled {
+        if self.horizon_given {
             return;
         }
         // Where little more than noise is left, a shorter run only shows less.

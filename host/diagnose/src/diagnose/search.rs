@@ -60,6 +60,10 @@ impl Evaluator<'_> {
                 break;
             }
         }
+        found.best = found
+            .best
+            .take()
+            .map(|best| self.smallest_within(best, &found.sizes));
         found.at = None;
     }
 
@@ -185,7 +189,8 @@ impl Evaluator<'_> {
 
     /// Takes each effect out of the smallest set that pays, and out of the best of every size that
     /// leaves less than all smaller ones: what helped another out of a false valley is not missing
-    /// itself. Then the smallest that pays is the best.
+    /// itself; and what each joint has is taken for one effect of all. Then the smallest that pays
+    /// is the best.
     fn prune(&self, found: &mut SearchResults) {
         loop {
             found.best = self.smallest_that_pays(&found.sizes);
@@ -201,6 +206,9 @@ impl Evaluator<'_> {
                 return;
             };
             self.take_apart(&whole, &mut found.sizes[whole.set.len() - 2]);
+            for merged in self.merged(&whole) {
+                put_among(&mut found.sizes[merged.set.len() - 1], vec![merged]);
+            }
             self.keep(found, |found| found.taken_apart.push(whole.set));
         }
     }

@@ -84,6 +84,20 @@ impl Evaluator<'_> {
         simplest.map(|(hypothesis, _)| *hypothesis)
     }
 
+    /// The simplest part of a set that does as well as the whole, or the whole. What each further
+    /// effect brings may pass for a gain where something else is missing, too.
+    pub fn smallest_within(&self, whole: Hypothesis, sizes: &[Vec<Hypothesis>]) -> Hypothesis {
+        let parts = sizes.iter().flatten().filter(|part| {
+            part.set.len() < whole.set.len()
+                && whole.extends(part)
+                && !self.clearly_worse(part, &whole, &self.base)
+        });
+        let simplest = parts
+            .min_by(|a, b| Hypothesis::by_simplicity(a, b))
+            .cloned();
+        simplest.unwrap_or(whole)
+    }
+
     /// Whether a larger set earns its place against a smaller one.
     pub fn improves(&self, reference: &Hypothesis, hypothesis: &Hypothesis) -> bool {
         let (Some(before), Some(evaluation)) = (reference.deciding(), &hypothesis.evaluation)
@@ -213,6 +227,25 @@ mod tests {
         };
         assert_eq!(names(4.1), ["viscous@1"]);
         assert_eq!(names(5.0), ["viscous@1", "cogging@1"]);
+    }
+
+    /// A set is not said to be needed whole beside a part of it that does as well.
+    #[test]
+    fn of_a_set_the_part_that_does_as_well_is_taken() {
+        let evaluator = evaluator(1, &["viscous"]);
+        let viscous = fitted(&evaluator, &["viscous"], [&[0.02]]);
+        let both = fitted(
+            &evaluator,
+            &["viscous", "cogging"],
+            [&[0.02], &[0.001, 10.0, 0.0]],
+        );
+        let names = |times: f64| {
+            let part = leaving(&evaluator, viscous.clone(), times);
+            let whole = leaving(&evaluator, both.clone(), 4.0);
+            evaluator.smallest_within(whole, &[vec![part]]).names()
+        };
+        assert_eq!(names(4.1), ["viscous@1"]);
+        assert_eq!(names(400.0), ["viscous@1", "cogging@1"]);
     }
 
     #[test]

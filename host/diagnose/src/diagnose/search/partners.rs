@@ -1,6 +1,6 @@
 //! Partners of a set: which candidates promise most on top of it, and in place of its members.
 
-use super::super::budget::{LOOK, PARTNERS};
+use super::super::budget::{FINISH, LOOK, PARTNERS};
 use super::super::evaluator::Evaluator;
 use super::super::hypothesis::Hypothesis;
 use crate::fitting::{Candidate, InitialGuess, PredictionChange, ProjectedResidual, changes_like};
@@ -72,6 +72,26 @@ impl Evaluator<'_> {
             looked.collect::<Vec<_>>()
         });
         found.collect()
+    }
+
+    /// The set with an effect that it has at every joint taken for the same at all of them, refitted
+    /// from the values it has: alike joints need no values of their own.
+    pub(super) fn merged(&self, whole: &Hypothesis) -> Vec<Hypothesis> {
+        let at_all = self.candidates.iter().filter(|all| all.joint.is_none());
+        let merged = at_all.filter_map(|all| {
+            let is_one = |other: &&Candidate| {
+                other.joint.is_some() && other.effect.info().id == all.effect.info().id
+            };
+            let joints = self.candidates.iter().filter(is_one).count();
+            let own: Vec<Candidate> = whole.set.iter().filter(is_one).copied().collect();
+            (joints > 1 && own.len() == joints)
+                .then(|| whole.merging(&own, *all, &self.base, &self.search, FINISH))
+        });
+        let mut merged: Vec<Hypothesis> = merged.collect();
+        for hypothesis in &mut merged {
+            self.evaluate_found(hypothesis);
+        }
+        merged
     }
 
     /// Tries to replace each older member of the best set, which may no longer be needed, and any
