@@ -46,9 +46,15 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
         lines.extend(lean_lines(stiffness, design));
     }
     if is_low(&margins.inputs) || margins.sensors.as_ref().is_some_and(is_low) {
+        let filter = design.estimator.as_ref();
+        let remedy = if filter.is_some_and(|filter| filter.recovery == 0.0) {
+            "a filter takes margin, and --recovery 1 gives it back; or weigh the speeds less or the \
+             inputs more (--q, --r)"
+        } else {
+            "weigh the speeds less or the inputs more (--q, --r), or try --tune"
+        };
         lines.push(format!(
-            "LOW MARGINS: below {} dB or {} deg in all channels at once; weigh the speeds less or \
-             the inputs more (--q, --r), or try --tune",
+            "LOW MARGINS: below {} dB or {} deg in all channels at once; {remedy}",
             LOW.0, LOW.1
         ));
     }

@@ -1,6 +1,6 @@
 //! The verification of a design in words.
 
-use crate::study::{LimitedFigure, STABILISED_SHARE, Verification, VerifiedLaw, Without};
+use crate::study::{LimitedFigure, NEAR_RAD, STABILISED_SHARE, Verification, VerifiedLaw, Without};
 
 /// Whether the simulated loop is stabilised, from how far, and what limits it.
 ///
@@ -27,7 +27,7 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
             near.runs,
             (10.0 * verified.near_rad.to_degrees()).round() / 10.0,
             also_mm(verified.near_rad),
-            if verified.near_rad > 0.51_f64.to_radians() {
+            if verified.near_rad > NEAR_RAD {
                 ", for nearer friction holds it by itself"
             } else {
                 ""
@@ -182,7 +182,7 @@ fn limits(verified: &Verification, reach: &dyn Fn(f64, bool) -> String) -> Strin
 fn ellipsoid(verified: &Verification, slides: bool) -> Option<String> {
     let ellipsoid = verified.ellipsoid.as_ref()?;
     let axes = ellipsoid.half_axes_rad.iter();
-    let axes: Vec<String> = axes.map(|rad| format!("{:.1}", rad.to_degrees())).collect();
+    let axes: Vec<String> = axes.map(|rad| format!("{:.2}", rad.to_degrees())).collect();
     let weak = ellipsoid.directions.first()?.iter();
     let weak: Vec<String> = weak.map(|share| format!("{share:+.2}")).collect();
     Some(format!(

@@ -78,7 +78,7 @@ pub fn grouped(command: Command) -> Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory as _;
+    use clap::{CommandFactory as _, FromArgMatches as _};
 
     #[test]
     fn every_command_has_its_place() {
@@ -91,5 +91,51 @@ mod tests {
         there.sort_unstable();
         listed.sort_unstable();
         assert_eq!(there, listed);
+    }
+
+    /// What the help lists as for plain states alone is what `--law observer` refuses.
+    #[test]
+    fn options_for_plain_states_are_refused_by_the_observer() {
+        let gains = GainsArgs::augment_args(Command::new("gains"));
+        let with_lqg = ["gyro_step", "process", "recovery"];
+        for arg in gains.get_arguments() {
+            let id = arg.get_id().as_str();
+            if ["model", "force"].contains(&id) {
+                continue;
+            }
+            let option = format!("--{}", arg.get_long().expect("an option"));
+            let mut line = vec!["gains", "a.toml", option.as_str()];
+            if arg.get_action().takes_values() {
+                line.push(value_of(id));
+            }
+            if with_lqg.contains(&id) {
+                line.push("--lqg");
+            }
+            if id == "r" {
+                line.extend(["--q", "1"]);
+            }
+            let command = GainsArgs::augment_args(Command::new("gains"));
+            let parsed = command.try_get_matches_from(&line);
+            let parsed = parsed.unwrap_or_else(|error| panic!("{line:?}: {error}"));
+            let args = GainsArgs::from_arg_matches(&parsed).expect("arguments");
+            assert!(args.for_plain_states().is_some(), "{option}");
+        }
+    }
+
+    /// A value that is not the default, of an option of `gains`.
+    fn value_of(id: &str) -> &'static str {
+        match id {
+            "ts" | "delay" => "0.02",
+            "pose" => "0.1",
+            "speeds" => "differences",
+            "without" => "coulomb",
+            "rust" => "a.rs",
+            "c" => "a.h",
+            "csv" => "a.csv",
+            "state_space" => "a.json",
+            "report" => "a.html",
+            "name" => "ARM",
+            _ => "0.5",
+        }
     }
 }

@@ -65,7 +65,7 @@ pub use shard::Shard;
 pub use summary::{FigureQuantiles, Influence, Summary, share_interval};
 pub use sweep::{Level, Sweep, sweep};
 pub use tune::{TUNING_STEPS, Tuned, WeightTrial, tune};
-pub use verified_loop::VerifiedLaw;
+pub use verified_loop::{NEAR_RAD, VerifiedLaw};
 pub use verify::{
     LimitedFigure, UndesignedEffect, Verification, Without, left_out, verification_steps, verify,
 };

@@ -26,7 +26,7 @@ const LASTING_RUNS: u64 = 20;
 const SECONDS: f64 = 5.0;
 
 /// Starts of the runs whose figures are given, rad: within half a degree, ..
-const NEAR_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
+pub const NEAR_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
 /// .. or this many times doubled, to 8 deg.
 pub(super) const DOUBLINGS: u32 = 4;
