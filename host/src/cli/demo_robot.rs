@@ -38,19 +38,19 @@ fn commands(demo: &RobotDemo, output: &Path) -> String {
     } else {
         demo.added.join(" ")
     };
+    let (training, held_out) = (demo.training.join(" "), demo.held_out.join(" "));
     format!(
-        "\nThe plan of learned.toml: handstand deploy {dir}/learned.toml --dry-run \
-         {LIMIT_OPTIONS} (fingerprint {fingerprint})\n\nThe same with your own robot, nominal.toml \
-         being its model; it hangs, and is upright for the last line:\n\
-         handstand replay {dir}/goals_a.csv --record a.csv --port PORT   # likewise b to e\n\
-         handstand diagnose nominal.toml a.csv b.csv c.csv --holdout d.csv e.csv\n\
-         handstand add nominal.toml {effects} --fit a.csv b.csv c.csv --holdout d.csv e.csv -o \
-         learned.toml\n\
-         handstand deploy learned.toml --dry-run   # what the plan takes, and whether it stands\n\
-         handstand balance learned.toml --port PORT\n\
-         The demonstration lets its robot move farther and faster: {LIMIT_OPTIONS}.\n\
+        "\nThe same by hand, in {dir}:\n\
+         handstand diagnose nominal.toml {training} --holdout {held_out}\n\
+         handstand add nominal.toml {effects} --fit {training} --holdout {held_out} -o again.toml\n\
+         handstand deploy again.toml --dry-run {LIMIT_OPTIONS}   # the plan of learned.toml: \
+         {fingerprint}\n\nAnd with your own robot, nominal.toml being its model: it hangs while it \
+         is recorded, and is upright for the last line:\n\
+         handstand replay goals_a.csv --record a.csv --port PORT   # likewise b to e; then as above\n\
+         handstand balance again.toml --port PORT\n\
          Of the drops b, c and e take the free swing alone, `b.csv:FIRST-LAST`: the rows behind \
-         torque_on's fall to 0.",
+         torque_on's fall to 0. The demonstration lets its robot move farther and faster than yours \
+         should: {LIMIT_OPTIONS}.",
         fingerprint = demo.learned.fingerprint,
     )
 }

@@ -11,8 +11,9 @@ use std::path::Path;
 
 /// The model that the robot's owner believes in.
 pub(super) const NOMINAL: &str = include_str!("nominal.toml");
-/// Step of the true robot's simulation, s.
-const TRUE_STEP_S: f64 = 1e-3;
+/// Step of the true robot's simulation, s: short beside the time that reading a servo takes, or
+/// what is read one after the other would be of one moment.
+const TRUE_STEP_S: f64 = 1e-4;
 /// Kinds that are hidden beside the drives' lag, one of them in each robot.
 const KINDS: [&str; 3] = ["coulomb", "dead_zone", "mass"];
 /// Largest departure of each joint from upright and straight at the start, deg.

@@ -2,21 +2,12 @@
 
 use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, diagnose_logs};
-use crate::effects::EFFECTS;
 use crate::error::Result;
-use crate::fitting::{Addition, Candidate, Horizon, Progress, add_effects, candidates_named};
+use crate::fitting::{Addition, Candidate, Progress, add_effects, candidates_named};
 use crate::log::LogSet;
 use crate::model::edit::{add_effect, set_step};
 use crate::model::{EffectInstance, Model};
 use std::path::Path;
-
-/// Kinds of effects that are tried: those of servos and links that a designer can do something
-/// about. All others are left out, that the diagnosis takes a minute; `handstand diagnose` tries
-/// them on the same files.
-const TRIED: [&str; 4] = ["delay", "dead_zone", "coulomb", "mass"];
-/// Length of the windows that are judged, s: dry friction of the bar, which has no encoder, shows
-/// in how a swing dies down, and in shorter windows their start states take it up.
-const HORIZON: Horizon = Horizon::Seconds(0.6);
 
 /// What the recordings taught.
 #[derive(Debug, Clone)]
@@ -30,7 +21,8 @@ pub struct Learned {
 }
 
 impl Learned {
-    /// Diagnoses the model of `file` and adds what is missing.
+    /// Diagnoses the model of `file` as `handstand diagnose` does unless told otherwise, and adds
+    /// what is missing as `handstand add` does.
     ///
     /// # Errors
     /// Logs that cannot be read, or effects that the model has no room for.
@@ -41,19 +33,8 @@ impl Learned {
         progress: &(dyn Fn(Progress) + Sync),
     ) -> Result<Learned> {
         let model = Model::parse(text, file)?;
-        let options = DiagnoseOptions {
-            without: (EFFECTS.iter().map(|effect| effect.info().id))
-                .filter(|id| !TRIED.contains(id))
-                .map(String::from)
-                .collect(),
-            horizon: Some(HORIZON),
-            most_effects: 2,
-            // Columns and drives are the recorder's own: what makes others look better is missing.
-            trust_log: true,
-            ..DiagnoseOptions::default()
-        };
         let named = ModelFile { path: file, text };
-        let found = diagnose_logs(&model, named, logs, &options, progress)?;
+        let found = diagnose_logs(&model, named, logs, &DiagnoseOptions::default(), progress)?;
         let added: Vec<String> = (found.diagnosis.effects.iter())
             .map(FittedEffect::address)
             .collect();
@@ -61,8 +42,7 @@ impl Learned {
             text.to_string()
         } else {
             let candidates = candidates_named(&added, &model)?;
-            let horizon = Some(HORIZON);
-            let addition = add_effects(text, file, &candidates, &found.split, horizon, &|_| {})?;
+            let addition = add_effects(text, file, &candidates, &found.split, None, &|_| {})?;
             match addition {
                 Addition::Added { text, .. } => text,
                 Addition::Undetermined(_) => as_diagnosed(text, file, &found.diagnosis)?,

@@ -7,6 +7,7 @@ use crate::link::record::{GoalMotion, Recording, RobotRecorder, Stream, follow, 
 use crate::link::virtual_cm5::{Cm5Port, SimLink, set_up_model, spec_with_robot};
 use crate::log::{LogRequest, LogSet};
 use crate::output::write_new;
+use handstand_shared::control_table::{CCW_MARGIN, CW_MARGIN, PUNCH};
 use std::path::Path;
 
 /// A motion of the hanging robot.
@@ -117,7 +118,14 @@ fn play(robot: &HiddenRobot, goals: &Path, log: &Path) -> Result<()> {
     let spec = spec_with_robot("ids=1-2+11-12,delay=0", Some(Path::new("true.toml")))?;
     let recording = read(goals)?;
     let motion = GoalMotion::of(&recording, goals)?;
-    let port = Cm5Port::new(set_up_model(&spec, robot.model()?)?);
+    let mut bus = set_up_model(&spec, robot.model()?)?;
+    for servo in &mut bus.servos {
+        // They regulate without a dead zone of their own: what is hidden is all that is missing.
+        for register in [CW_MARGIN, CCW_MARGIN, PUNCH] {
+            servo.set(register, 0);
+        }
+    }
+    let port = Cm5Port::new(bus);
     let mut source = Stream::new(SimLink(port), &recording.ids)?;
     let mut recorder = RobotRecorder::create(log, &recording.ids, false)?;
     follow(&motion, &mut source, Some(&mut recorder), &|| true, &|_| {})?;

@@ -9,7 +9,7 @@ use crate::deploy::{Board, PlanBasis, ToldDrives};
 use crate::diagnose::{Diagnosis, Verdict};
 use crate::error::{Error, Result};
 use crate::fitting::{Candidate, Progress};
-use crate::log::LogSet;
+use crate::log::{LogRequest, LogSet};
 use crate::model::Model;
 use crate::output::number::exact;
 use crate::output::write_new;
@@ -43,6 +43,10 @@ pub struct RobotDemo {
     pub nominal: BalanceAttempt,
     /// With the plan of what was learned.
     pub learned: BalanceAttempt,
+    /// Motions that were learned from, as a command takes them.
+    pub training: Vec<String>,
+    /// Motions that judged.
+    pub held_out: Vec<String>,
     /// Verdict of the diagnosis.
     pub verdict: Verdict,
     /// Effects that were added.
@@ -107,6 +111,8 @@ pub fn run(seed: u64, dir: &Path, hear: &(dyn Fn(DemoStep) + Sync)) -> Result<Ro
         seed,
         nominal,
         learned,
+        training: logs.training.iter().map(LogRequest::name).collect(),
+        held_out: logs.held_out.iter().map(LogRequest::name).collect(),
         verdict: taught.diagnosis.verdict,
         named: names_all(&robot.answer.effects, &taught.added),
         effects: (robot.answer.effects.iter())
