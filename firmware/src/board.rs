@@ -105,3 +105,20 @@ pub trait Board {
 pub fn since_us(board: &(impl Board + ?Sized), start: u16) -> u16 {
     board.clock().wrapping_sub(start) / crate::design::CLOCK_PER_US
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Board;
+    use crate::test_board::TestBoard;
+
+    /// To the microsecond: the board's clock goes on by one at each look.
+    #[test]
+    fn a_wait_is_as_long_as_asked() {
+        for us in [0, 1, 200] {
+            let mut board = TestBoard::default();
+            board.wait(us);
+            // The first look is its beginning, and one at least is the end.
+            assert_eq!(board.now_us(), us.max(1) + 1);
+        }
+    }
+}

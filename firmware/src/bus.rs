@@ -185,3 +185,44 @@ pub fn write_each<B: Board>(
     }
     board.bus_send(&[check_byte(sum)]);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_board::TestBoard;
+
+    fn gap_us(board: &TestBoard) -> u16 {
+        let [.., (_, [_, ended]), (_, [began, _])] = &board.sent[..] else {
+            panic!("two packets");
+        };
+        began - ended
+    }
+
+    /// A servo ignores a write that comes right behind another.
+    #[test]
+    fn torque_off_is_said_twice_with_a_pause_between() {
+        let mut board = TestBoard::default();
+        torque_off(&mut board);
+        assert_eq!(board.sent.len(), 2);
+        assert_eq!(board.sent[0].0, board.sent[1].0);
+        let gap = gap_us(&board);
+        assert!(
+            (BETWEEN_WRITES_US..BETWEEN_WRITES_US + 5).contains(&gap),
+            "{gap}"
+        );
+    }
+
+    /// Less what has passed since they were handed over.
+    #[test]
+    fn commands_have_gone_out_and_were_obeyed_before_the_next() {
+        for passed in [0, 100, 1000] {
+            let mut board = TestBoard::default();
+            let handed_over = board.clock();
+            board.pass_us(passed);
+            pause_since(&mut board, handed_over);
+            let waited = board.now_us() - passed;
+            let due = (COMMANDS_US + BETWEEN_WRITES_US).saturating_sub(passed);
+            assert!((due..due + 5).contains(&waited), "{passed}: {waited}");
+        }
+    }
+}

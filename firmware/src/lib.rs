@@ -24,6 +24,8 @@ pub mod link;
 pub mod panel;
 pub mod plan_store;
 pub mod servos;
+#[cfg(test)]
+mod test_board;
 
 #[cfg(target_arch = "avr")]
 pub mod atmega128;

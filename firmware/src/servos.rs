@@ -311,3 +311,41 @@ impl Servos {
         missing
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(super) fn list(ids: &[u8]) -> ServoList {
+        let mut all = [0; SERVOS];
+        all[..ids.len()].copy_from_slice(ids);
+        ServoList {
+            count: ids.len() as u8,
+            ids: all,
+        }
+    }
+
+    /// Two of one id never say it: arming does not wait for them for ever.
+    #[test]
+    fn a_mode_that_is_not_said_eight_times_is_waited_for_no_longer() {
+        let mut servo = Servo::unknown(1);
+        servo.hear(true);
+        for _ in 0..MOST_MODE_MISSES {
+            assert!(servo.owes_mode());
+            servo.miss_mode();
+        }
+        assert!(!servo.owes_mode());
+
+        servo.mode = ServoMode::Wheel;
+        let misses = servo.mode_misses;
+        servo.miss_mode();
+        assert_eq!(servo.mode_misses, misses, "its mode is known");
+    }
+
+    #[test]
+    fn the_second_turn_is_another_servos_where_there_is_one() {
+        for (ids, second) in [(&[7][..], 0), (&[7, 8], 1), (&[7, 8, 9], 1)] {
+            assert_eq!(Servos::new(&list(ids)).housekeeping_second, second);
+        }
+    }
+}

@@ -157,3 +157,23 @@ impl State {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn goals_are_obeyed_while_torque_is_on_or_falls() {
+        let fading = Fading {
+            cause: Cause::LinkLost,
+            since: Age::NEVER,
+            from: TorqueLimit::FULL,
+            obeyed: 9,
+        };
+        let obeyed = |torque| State::Stream(torque).obeyed();
+        assert_eq!(obeyed(Torque::On(Armed::by(7, Onset::Done))), 7);
+        assert_eq!(obeyed(Torque::Fading(fading)), 9);
+        assert_eq!(obeyed(Torque::Off), 0);
+        assert_eq!(State::Bridge.obeyed(), 0);
+    }
+}

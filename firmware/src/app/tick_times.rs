@@ -59,3 +59,60 @@ impl TickTimes {
         self.longest_law_us = 0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_board::TestBoard;
+
+    const PERIOD: u16 = TICK_US * CLOCK_PER_US;
+
+    #[test]
+    fn a_tick_that_was_skipped_is_an_overrun_and_an_early_one_is_none() {
+        for (late, overruns) in [
+            (0, 0),
+            (PERIOD - 1, 0),
+            (PERIOD, 1),
+            (0x8000, 0),
+            (0xfff0, 0),
+        ] {
+            let mut times = TickTimes::default();
+            times.begin(100);
+            times.begin((100 + PERIOD).wrapping_add(late));
+            assert_eq!(times.overruns, overruns, "{late}");
+        }
+    }
+
+    #[test]
+    fn a_tick_longer_than_its_period_is_an_overrun() {
+        for (us, overruns) in [
+            (TICK_US - 1, 0),
+            (TICK_US, 0),
+            (TICK_US + 1, 1),
+            (TICK_US + 900, 1),
+        ] {
+            let mut times = TickTimes::default();
+            let board = TestBoard::default();
+            // Its clock goes on by one when it is read.
+            board.pass_us(us - 1);
+            times.end(&board, 0);
+            assert_eq!((times.last_us, times.longest_us), (us, us));
+            assert_eq!(
+                (times.overruns, times.calm == 0),
+                (overruns, overruns == 1),
+                "{us}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_longest_are_told_once() {
+        let mut times = TickTimes {
+            longest_us: 5,
+            longest_law_us: 3,
+            ..TickTimes::default()
+        };
+        times.forget_longest();
+        assert_eq!((times.longest_us, times.longest_law_us), (0, 0));
+    }
+}

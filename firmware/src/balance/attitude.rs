@@ -142,4 +142,47 @@ mod tests {
             assert_eq!(balance.rate, 2793 >> 4, "{code}");
         }
     }
+
+    /// Ten ticks of this gyro's codes, every second one another.
+    fn rested(scale: i16, spread: u16) -> Balance {
+        let mut balance = Balance::NONE;
+        balance.plan.gyro = Gyro {
+            from_host: false,
+            zero: 512,
+            scale,
+        };
+        (0..u16::from(REST_TICKS)).for_each(|tick| balance.rest(512 + (tick & 1) * spread));
+        balance
+    }
+
+    /// A code to and fro is rounding, however much of a rate it is; two are a motion where they are
+    /// more than the rate at rest.
+    #[test]
+    fn rest_is_a_rate_below_its_limit() {
+        let at_limit = (16 * REST_RATE / 2) as i16;
+        for (scale, spread, is_at_rest) in [
+            (i16::MAX, 1, true),
+            (at_limit, 2, true),
+            (at_limit + 16, 2, false),
+            (at_limit, 3, false),
+        ] {
+            assert_eq!(
+                rested(scale, spread).is_at_rest(),
+                is_at_rest,
+                "{scale} {spread}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_may_have_been_moved_must_come_to_rest_again() {
+        let mut balance = rested(279, 0);
+        assert!(balance.is_at_rest());
+        balance.forget_rest();
+        assert!(!balance.is_at_rest());
+        (1..REST_TICKS).for_each(|_| balance.rest(512));
+        assert!(!balance.is_at_rest());
+        balance.rest(512);
+        assert!(balance.is_at_rest());
+    }
 }

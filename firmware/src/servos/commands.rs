@@ -281,3 +281,27 @@ impl Servos {
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::list;
+    use super::*;
+
+    #[test]
+    fn what_was_not_read_is_not_commanded() {
+        let states = [
+            (true, Registers::Unread, false),
+            (true, Registers::AsWritten, true),
+            (true, Registers::Differ, true),
+            (true, Registers::Withheld, false),
+            (false, Registers::AsWritten, false),
+        ];
+        let mut servos = Servos::new(&list(&[1, 2, 3, 4, 5]));
+        for (servo, (armed, registers, _)) in servos.all_mut().iter_mut().zip(states) {
+            (servo.armed, servo.registers) = (armed, registers);
+        }
+        servos.leave_out_unread();
+        let left: std::vec::Vec<bool> = servos.all().iter().map(|servo| servo.armed).collect();
+        assert_eq!(left, states.map(|(_, _, stays)| stays));
+    }
+}

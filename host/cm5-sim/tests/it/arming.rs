@@ -273,3 +273,77 @@ fn what_was_read_before_an_adapter_s_time_arms_nothing() {
     let goal = handstand_shared::control_table::GOAL_POSITION;
     assert_eq!(cm5.bus().servo(5).unwrap().get(goal), 700);
 }
+
+/// Of two frames that ask for the same the later one is answered, once; other limits need another
+/// greeting.
+#[test]
+fn arming_that_is_said_again_goes_on() {
+    let mut cm5 = VirtualCm5::new();
+    let token = greet(&mut cm5).token;
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    say(&mut cm5, &Command::KeepAlive, 300);
+    cm5.clear();
+    let first = cm5.send(&arm_with(token));
+    cm5.run_ms(15.0);
+    let again = cm5.send(&arm_with(token));
+    let other = cm5.send(&Command::Arm {
+        token,
+        limits: ArmLimits {
+            torque: TorqueLimit(100),
+            ..ArmLimits::FULL
+        },
+    });
+    say(&mut cm5, &Command::KeepAlive, 600);
+    let reports = cm5.reports().into_iter();
+    let answers: Vec<_> = reports
+        .filter_map(|(_, report)| match report {
+            Report::Answer(answer) if answer.sequence >= first && answer.sequence <= other => {
+                Some((answer.sequence, answer.outcome))
+            }
+            _ => None,
+        })
+        .collect();
+    assert_eq!(answers, [(other, Err(Refusal::Token)), (again, Ok(()))]);
+}
+
+/// Milliseconds from the command to its answer, which is a yes.
+fn armed_after_ms(cm5: &mut VirtualCm5, command: &Command) -> f64 {
+    let began_ms = cm5.now_ms();
+    assert_eq!(ask(cm5, command), Some(Ok(())));
+    cm5.now_ms() - began_ms
+}
+
+/// Servos that need a pause between writes, and torque off that is said again and again for 200
+/// ms: the limits are written behind it as soon as later.
+#[test]
+fn a_robot_let_go_a_moment_ago_is_armed_as_fast() {
+    for wait_ms in [0, 100, 300] {
+        let mut cm5 = VirtualCm5::new();
+        for servo in &mut cm5.bus().servos {
+            servo.faults.write_ns = 150_000;
+        }
+        arm(&mut cm5);
+        assert_eq!(ask(&mut cm5, &Command::Disarm), Some(Ok(())));
+        let token = greet(&mut cm5).token;
+        say(&mut cm5, &Command::KeepAlive, wait_ms);
+        let limits = ArmLimits {
+            torque: TorqueLimit(200),
+            speed: MovingSpeed(50),
+        };
+        let ms = armed_after_ms(&mut cm5, &Command::Arm { token, limits });
+        assert!(ms < 112.0, "{ms} ms, {wait_ms} ms after torque went off");
+    }
+}
+
+/// Thirty ticks, and the one in which it is told.
+#[test]
+fn a_servo_that_cannot_be_read_is_waited_for_no_longer_than_said() {
+    let mut cm5 = VirtualCm5::new();
+    let token = greet(&mut cm5).token;
+    assert_eq!(ask(&mut cm5, &Command::Mode(Mode::Stream)), Some(Ok(())));
+    say(&mut cm5, &Command::KeepAlive, 300);
+    cm5.bus().servo(7).unwrap().faults.drop = 1.0;
+    let ms = armed_after_ms(&mut cm5, &arm_with(token));
+    assert!((300.0..310.0).contains(&ms), "{ms} ms");
+    assert!(!cm5.bus().servo(7).unwrap().torque_is_on());
+}
