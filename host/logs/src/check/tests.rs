@@ -245,3 +245,44 @@ fn a_column_that_the_reader_misses_is_refused() {
     let idle = found(&table(|_| 0, |_| ""), &released);
     assert!(!idle.iter().any(|f| f.kind == "missing"), "{idle:#?}");
 }
+
+/// What is fitted together must be of one rig, and what is read is not refused here.
+#[test]
+fn logs_of_bam_are_checked_as_they_are_read() {
+    let log = |kp: u32, begin_s: f64| {
+        let entry = |i: u32| {
+            let (time_s, goal) = (begin_s + 0.01 * f64::from(i), 0.1 * f64::from(i % 7));
+            format!("{{\"timestamp\": {time_s}, \"position\": 0.5, \"goal_position\": {goal}}}")
+        };
+        let entries: Vec<String> = (0..40).map(entry).collect();
+        let entries = entries.join(",");
+        let log = tempfile::Builder::new().suffix(".json").tempfile().unwrap();
+        std::fs::write(
+            log.path(),
+            format!("{{\"kp\": {kp}, \"entries\": [{entries}]}}"),
+        )
+        .unwrap();
+        log
+    };
+    let (one, same, other) = (log(32, 0.0), log(32, 5.0), log(16, 9.0));
+    let checked = |logs: [&tempfile::NamedTempFile; 2], model: &Model| {
+        let requests = logs.map(|log| LogRequest::whole(log.path()));
+        let is_read = crate::read(&requests, &model.log).is_ok();
+        (check(&requests, model).unwrap(), is_read)
+    };
+    let refused = |findings: &[LogFinding]| {
+        findings
+            .iter()
+            .any(|finding| finding.severity == Severity::Refuse)
+    };
+    let mut model = servo();
+    let (findings, is_read) = checked([&one, &same], &model);
+    assert_eq!((refused(&findings), is_read), (false, true), "{findings:?}");
+    let (findings, is_read) = checked([&one, &other], &model);
+    assert_eq!((refused(&findings), is_read), (true, false));
+    finds(&findings, Severity::Refuse, "kp is 16, and 32 in");
+    // A supply that a bench does not log is the model's own.
+    model.log.supply = Some(model.log.time.clone());
+    let (findings, is_read) = checked([&one, &same], &model);
+    assert_eq!((refused(&findings), is_read), (false, true), "{findings:?}");
+}

@@ -88,3 +88,55 @@ fn mass_length_and_gain_are_held_against_the_model() {
     let said = read(&both, &columns()).unwrap_err().to_string();
     assert!(said.contains("kp is 16, and 32 in"), "{said}");
 }
+
+/// A log of BAM of these times.
+fn timed(times_s: &[f64], kp: u32) -> tempfile::NamedTempFile {
+    let entries: Vec<String> = (times_s.iter())
+        .map(|time_s| {
+            format!("{{\"timestamp\": {time_s}, \"position\": 0.5, \"goal_position\": 0.5}}")
+        })
+        .collect();
+    let entries = entries.join(",");
+    file(
+        format!("{{\"kp\": {kp}, \"entries\": [{entries}]}}").as_bytes(),
+        ".json",
+    )
+}
+
+/// Twice twelve entries with this pause between.
+fn paused(pause_s: f64) -> tempfile::NamedTempFile {
+    let times: Vec<f64> = (0..24)
+        .map(|i| 0.01 * f64::from(i) + if i < 12 { 0.0 } else { pause_s })
+        .collect();
+    timed(&times, 32)
+}
+
+#[test]
+fn a_pause_parts_motions_as_in_other_logs() {
+    let cut = LogColumns {
+        split_at_gap_s: Some(0.5),
+        ..columns()
+    };
+    let read_as = |pause_s, columns: &LogColumns| {
+        let log = paused(pause_s);
+        read(&[LogRequest::whole(log.path())], columns)
+    };
+    let lengths = |motions: Vec<Motion>| motions.iter().map(Motion::len).collect::<Vec<_>>();
+    assert_eq!(lengths(read_as(0.4, &cut).unwrap()), [24]);
+    assert_eq!(lengths(read_as(0.6, &cut).unwrap()), [12, 12]);
+    let said = read_as(101.0, &columns()).unwrap_err().to_string();
+    assert!(said.contains("101"), "{said}");
+}
+
+#[test]
+fn a_log_of_one_joint_is_not_that_of_a_chain() {
+    let mut two = columns();
+    two.joints.push(two.joints[0].clone());
+    let log = paused(0.0);
+    let error = read(&[LogRequest::whole(log.path())], &two).unwrap_err();
+    let said = error.to_string();
+    assert!(
+        said.contains("a log of BAM is of one joint, the model of 2"),
+        "{said}"
+    );
+}
