@@ -11,6 +11,7 @@ mod infos;
 mod laws;
 mod off;
 mod sensors;
+mod tables;
 
 /// Units and what a key of that unit ends in.
 const SUFFIXES: &[(&str, &str)] = &[
