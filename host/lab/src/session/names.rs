@@ -5,7 +5,7 @@ use crate::model::ParameterPath;
 use crate::model::suggest::split_unit;
 
 /// An effect and its joint, counted from 0, of an address such as `coulomb@1`.
-pub fn effect_of(address: &str) -> Option<(&'static dyn Effect, Option<usize>)> {
+pub fn effect_of(address: &str) -> Option<(Effect, Option<usize>)> {
     let (id, joint) = match address.split_once('@') {
         Some((id, "all")) => (id, None),
         Some((id, joint)) => (id, Some(joint.parse::<usize>().ok()?.checked_sub(1)?)),

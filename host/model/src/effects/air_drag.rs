@@ -1,6 +1,6 @@
 //! Air drag: resistance in proportion to the square of speed.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// -c w |w|.
 #[derive(Debug)]
@@ -24,6 +24,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -coefficient_nm_s2_rad2 * w * |w|",
     parameters: &[Parameter {
         key: "coefficient_nm_s2_rad2",
@@ -63,13 +64,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for AirDrag {
+impl Law for AirDrag {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

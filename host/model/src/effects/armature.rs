@@ -1,6 +1,6 @@
 //! Armature: the rotor, seen through the gear, adds inertia without weight.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// J + N^2 J_r at the joint, with gear ratio N and rotor inertia J_r.
 #[derive(Debug)]
@@ -43,6 +43,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "inertia at the joint + inertia_kg_m2, without weight",
     parameters: &[ROTOR],
     looks_like: "the arm starts and stops late, yet holds still at the right duty; a free swing is \
@@ -70,13 +71,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for Armature {
+impl Law for Armature {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn is_of_servo(&self) -> bool {

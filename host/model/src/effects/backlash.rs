@@ -1,6 +1,6 @@
 //! Backlash: play between joint and encoder.
 
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap /
 /// 2 behind.
@@ -22,6 +22,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "the reading stays while |q - reading| <= gap_rad / 2, else it follows at that distance",
     parameters: &[Parameter {
         key: "gap_rad",
@@ -67,13 +68,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for Backlash {
+impl Law for Backlash {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn slipped(&self, [encoded_rad, reading_rad, draws_away_rad_s, _]: SenseMemory) -> [f64; 2] {

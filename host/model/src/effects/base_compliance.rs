@@ -1,7 +1,7 @@
 //! Base compliance: the bar, or the mount, gives way.
 
 use super::gear::HIGHEST_RAD_S;
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// m x'' + c x' + k x = -F in both directions of the rig's plane, F being what the chain asks of
 /// its base; c by the damping ratio c / (2 sqrt(k m)).
@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::WholeRig,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "mass_kg * x'' + c * x' + stiffness_n_m * x = force of the chain, c = 2 * damping_ratio * \
      sqrt(stiffness_n_m * mass_kg); likewise upward",
     parameters: &[
@@ -102,7 +103,7 @@ impl BaseSpring {
     }
 }
 
-impl Effect for BaseCompliance {
+impl Law for BaseCompliance {
     fn info(&self) -> &'static EffectInfo {
         &INFO
     }

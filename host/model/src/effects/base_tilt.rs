@@ -1,6 +1,6 @@
 //! Base tilt: the rig does not stand plumb.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// Gravity turned by b in the plane of the rig, counter-clockwise; by -b where the rig stands
 /// turned by 180 degrees about the vertical.
@@ -21,6 +21,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::WholeRig,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "gravity turned by angle_rad in the plane of the rig",
     parameters: &[Parameter {
         key: "angle_rad",
@@ -43,7 +44,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
 };
 
-impl Effect for BaseTilt {
+impl Law for BaseTilt {
     fn info(&self) -> &'static EffectInfo {
         &INFO
     }

@@ -1,6 +1,6 @@
 //! Load friction of a plain bearing: the weight it carries and the swing press on it.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// r F, with r the friction coefficient times the bearing radius and F the force in the bearing.
 #[derive(Debug)]
@@ -19,6 +19,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::PassiveJoint,
     needs: Needs::BearingLoad,
+    on_slide: OnSlide::Never,
     law: "friction = radius_m * bearing force, against the motion",
     parameters: &[Parameter {
         key: "radius_m",
@@ -42,7 +43,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Bowden, Tabor, The Friction and Lubrication of Solids (1950)",
 };
 
-impl Effect for BearingFriction {
+impl Law for BearingFriction {
     fn info(&self) -> &'static EffectInfo {
         &INFO
     }

@@ -1,6 +1,6 @@
 //! Cable spring: a cable across the joint pulls it toward a rest angle.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// -k (q - q_0).
 #[derive(Debug)]
@@ -24,6 +24,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -stiffness_nm_rad * (q - rest_angle_rad)",
     parameters: &[
         Parameter {
@@ -88,13 +89,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for CableSpring {
+impl Law for CableSpring {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

@@ -1,6 +1,6 @@
 //! Cogging and gear ripple: a torque that repeats around the turn.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 use crate::dynamics::Lane;
 use std::f64::consts::PI;
 
@@ -22,6 +22,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Never,
     law: "torque = amplitude_nm * sin(periods_per_turn * q + phase_rad)",
     parameters: &[
         Parameter {
@@ -69,7 +70,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Holtz, Springob, IEEE Transactions on Industrial Electronics 43 (1996) 309",
 };
 
-impl Effect for Cogging {
+impl Law for Cogging {
     fn info(&self) -> &'static EffectInfo {
         &INFO
     }

@@ -1,6 +1,6 @@
 //! Centre-of-mass angle: the centre of mass lies beside the line between the joints.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// m g l_c sin(q + a), for a link that hangs at q = 0.
 #[derive(Debug)]
@@ -21,6 +21,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "the centre of mass of the link is turned by angle_rad about its joint",
     parameters: &[Parameter {
         key: "angle_rad",
@@ -50,13 +51,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "An, Atkeson, Hollerbach, Model-Based Control of a Robot Manipulator (1988)",
 };
 
-impl Effect for ComAngle {
+impl Law for ComAngle {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

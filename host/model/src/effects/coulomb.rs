@@ -1,6 +1,6 @@
 //! Coulomb friction: the same resistance at every speed, and a hold at rest.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// tau_f = -tau_c sgn(w); at rest the joint is held up to tau_c.
 #[derive(Debug)]
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = torque_nm * sgn(w), against the motion; at rest it holds up to torque_nm",
     parameters: &[Parameter {
         key: "torque_nm",
@@ -62,13 +63,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for Coulomb {
+impl Law for Coulomb {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn friction(&self, values: &[f64], _at: &FrictionState) -> f64 {

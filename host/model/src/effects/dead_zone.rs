@@ -1,6 +1,6 @@
 //! Dead zone: the drive swallows small commands.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full
 /// range.
@@ -14,6 +14,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Command,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "applied duty = 0 while |u| <= width, else u + punch * sgn(u)",
     parameters: &[
         Parameter {
@@ -52,13 +53,9 @@ static INFO: EffectInfo = EffectInfo {
      Nonlinearities (1996); ROBOTIS AX-12 manual, compliance margin and punch",
 };
 
-impl Effect for DeadZone {
+impl Law for DeadZone {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn difference(&self) -> f64 {

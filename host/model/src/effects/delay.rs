@@ -1,6 +1,6 @@
 //! Transport delay: the drive acts on an input that is some time old.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// u(t - T).
 #[derive(Debug)]
@@ -21,6 +21,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Timing,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "the drive applies u(t - delay_s)",
     parameters: &[Parameter {
         key: "delay_s",
@@ -45,13 +46,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Ljung, System Identification, 2nd ed., section 4.2",
 };
 
-impl Effect for Delay {
+impl Law for Delay {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn delay_s(&self, values: &[f64]) -> f64 {

@@ -1,6 +1,6 @@
 //! Direction asymmetry: one direction resists more than the other.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// tau_d sgn(w): the friction is tau_c + tau_d forwards and tau_c - tau_d backwards.
 #[derive(Debug)]
@@ -18,6 +18,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction += half_difference_nm * sgn(w)",
     parameters: &[Parameter {
         key: "half_difference_nm",
@@ -58,13 +59,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for DirectionAsymmetry {
+impl Law for DirectionAsymmetry {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {

@@ -1,6 +1,6 @@
 //! Drive/backdrive asymmetry: of the motor's torque a gear loses another share than of the load's.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// |k_m tau_m - k_e tau_e|, with motor torque tau_m and outside torque tau_e.
 #[derive(Debug)]
@@ -21,6 +21,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::DrivenJoint,
     needs: Needs::GearLoad,
+    on_slide: OnSlide::Same,
     law: "friction = |motor_factor * motor torque - outside_factor * outside torque|, against the \
           motion",
     parameters: &[
@@ -56,13 +57,9 @@ static INFO: EffectInfo = EffectInfo {
                 Simulation of Servo Actuators, arXiv:2410.08650, model M5",
 };
 
-impl Effect for DriveAsymmetry {
+impl Law for DriveAsymmetry {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {

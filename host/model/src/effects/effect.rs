@@ -1,32 +1,22 @@
-//! What an effect may change: a hook for each site.
+//! What an effect may change: a hook for each site, on the axis of its joint.
 
 use super::{
     AtRest, Axis, DriveState, EffectInfo, Encoded, FrictionState, Gear, JointState, MemoryCell,
-    Rig, SenseMemory, Site, Slope, StepState, ValueBehind,
+    OnSlide, Rig, SenseMemory, Site, Slope, StepState, ValueBehind,
 };
-use std::fmt;
+use std::{fmt, ops};
 
 /// Relative step of a finite difference in the values of a smooth law.
 pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
 
-/// A departure from the rigid chain with ideal drives and sensors.
+/// A law by which joints depart from the rigid chain with ideal drives and sensors.
 ///
-/// Every hook's default is identity; an effect overrides that of its site. `values` are in its
+/// It is one law for both kinds of joint: in rad and N m where the joint turns, in m and N where it
+/// slides. Every hook's default is identity; an effect overrides that of its site. `values` are in its
 /// parameters' order.
-pub trait Effect: Sync + fmt::Debug {
-    /// What people and tools need to know of it.
+pub trait Law: Sync + fmt::Debug {
+    /// What people and tools need to know of it at a joint that turns.
     fn info(&self) -> &'static EffectInfo;
-
-    /// What people and tools need to know of it at a joint that slides, in m and N: `info()` itself
-    /// where no unit is one of angles; none where it cannot act there.
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        None
-    }
-
-    /// The joints whose units its values have; see [`super::on_axis`].
-    fn axis(&self) -> Axis {
-        Axis::Hinge
-    }
 
     /// Whether a model file defines it: see [`super::expression`].
     fn is_users(&self) -> bool {
@@ -182,8 +172,53 @@ pub trait Effect: Sync + fmt::Debug {
     }
 }
 
-impl PartialEq for dyn Effect {
-    fn eq(&self, other: &dyn Effect) -> bool {
+/// A departure from the rigid chain with ideal drives and sensors: a law, and how the joints move
+/// whose units its values have.
+#[derive(Debug, Clone, Copy)]
+pub struct Effect {
+    law: &'static dyn Law,
+    axis: Axis,
+}
+
+impl Effect {
+    /// The effect of a law at joints that turn.
+    pub const fn of(law: &'static dyn Law) -> Effect {
+        Effect {
+            law,
+            axis: Axis::Hinge,
+        }
+    }
+
+    /// What people and tools need to know of it at a joint of its axis.
+    pub fn info(self) -> &'static EffectInfo {
+        match (self.axis, self.law.info().on_slide) {
+            (Axis::Slide, OnSlide::Own(info)) => info,
+            _ => self.law.info(),
+        }
+    }
+
+    /// The joints whose units its values have.
+    pub fn axis(self) -> Axis {
+        self.axis
+    }
+
+    /// It at a joint of this kind; none where it cannot act.
+    pub fn on(self, axis: Axis) -> Option<Effect> {
+        let acts = axis == Axis::Hinge || !matches!(self.info().on_slide, OnSlide::Never);
+        acts.then_some(Effect { axis, ..self })
+    }
+}
+
+impl ops::Deref for Effect {
+    type Target = dyn Law;
+
+    fn deref(&self) -> &Self::Target {
+        self.law
+    }
+}
+
+impl PartialEq for Effect {
+    fn eq(&self, other: &Effect) -> bool {
         self.info().id == other.info().id
     }
 }

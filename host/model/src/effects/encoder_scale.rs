@@ -1,6 +1,6 @@
 //! Encoder scale: the reading stretches the angle.
 
-use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// s q.
 #[derive(Debug)]
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "reading = factor * q",
     parameters: &[Parameter {
         key: "factor",
@@ -45,13 +46,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
 };
 
-impl Effect for EncoderScale {
+impl Law for EncoderScale {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Encoder zero: the reading is off by a constant.
 
-use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// q + o.
 #[derive(Debug)]
@@ -21,6 +21,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "reading = q + offset_rad",
     parameters: &[Parameter {
         key: "offset_rad",
@@ -61,13 +62,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for EncoderZero {
+impl Law for EncoderZero {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::StepState;
 use super::{
-    AtRest, DriveState, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+    AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
 };
 
 /// tau s once |u| has been above a level for a time, which runs backwards below the level, from 0
@@ -23,6 +23,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "torque * remaining_share once |u| > level for after_s; as long below the level ends it",
     parameters: &[
         Parameter {
@@ -64,13 +65,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "ROBOTIS AX-12 manual, alarm shutdown by overload; its torque limit falls",
 };
 
-impl Effect for FoldBack {
+impl Law for FoldBack {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn difference(&self) -> f64 {

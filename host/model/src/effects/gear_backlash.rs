@@ -1,7 +1,7 @@
 //! Backlash of the gear: motor and joint, each with its inertia, meet at either flank of a gap.
 
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
-use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// No torque within the gap; beyond it flanks that push, never pull, and hardly rebound.
 #[derive(Debug)]
@@ -23,6 +23,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Gear,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "no torque while |q_m - q| < gap_rad / 2, else that of the flanks; inertia_kg_m2 * \
      d(w_m)/dt = motor - torque",
     parameters: &[
@@ -71,13 +72,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for GearBacklash {
+impl Law for GearBacklash {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn difference(&self) -> f64 {

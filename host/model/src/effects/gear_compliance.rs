@@ -1,7 +1,7 @@
 //! Gear compliance: the motor turns its joint through a spring.
 
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
-use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// k (q_m - q) + c (w_m - w) on the joint, and its reaction on a motor of inertia J, both as seen
 /// at the joint; c by the damping ratio c / (2 sqrt(k J)).
@@ -42,6 +42,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Gear,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = stiffness_nm_rad * (q_m - q) + c * (w_m - w), c = 2 * damping_ratio * \
      sqrt(stiffness_nm_rad * inertia_kg_m2); inertia_kg_m2 * d(w_m)/dt = motor - torque",
     parameters: &[
@@ -93,13 +94,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for GearCompliance {
+impl Law for GearCompliance {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn difference(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Grip slip: the bar, or the shaft of an encoder, slips in what turns it.
 
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// Coulomb friction carries the sensor's shaft along, which it can speed up by no more than a; else
 /// it slips until both turn alike again. a is the friction's torque over the shaft's inertia: the
@@ -15,6 +15,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "d(w_s)/dt = acceleration_rad_s2 * sgn(w - w_s) while the shaft slips, else w_s = w; \
      d(reading)/dt = w_s",
     parameters: &[Parameter {
@@ -55,13 +56,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for GripSlip {
+impl Law for GripSlip {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn difference(&self) -> f64 {

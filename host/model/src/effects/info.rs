@@ -60,6 +60,17 @@ pub enum ValueBehind {
     LinkMass,
 }
 
+/// What an effect is at a joint that slides.
+#[derive(Debug, Clone, Copy)]
+pub enum OnSlide {
+    /// No unit of its values is one of angles: the same.
+    Same,
+    /// Its values have other keys and units, in m and N.
+    Own(&'static EffectInfo),
+    /// It cannot act there.
+    Never,
+}
+
 /// What must be logged or known for an effect to be a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
@@ -124,6 +135,9 @@ pub struct EffectInfo {
     /// What it takes to be a candidate.
     #[serde(skip)]
     pub needs: Needs,
+    /// What it is at a joint that slides.
+    #[serde(skip)]
+    pub on_slide: OnSlide,
     /// Its values.
     pub parameters: &'static [Parameter],
     /// What a log shows.

@@ -1,6 +1,6 @@
 //! Load friction: what the gear transmits presses its teeth together.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// k |tau_m - tau_e|, with motor torque tau_m and outside torque tau_e.
 #[derive(Debug)]
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::DrivenJoint,
     needs: Needs::GearLoad,
+    on_slide: OnSlide::Same,
     law: "friction = factor * gear load, against the motion",
     parameters: &[Parameter {
         key: "factor",
@@ -47,13 +48,9 @@ static INFO: EffectInfo = EffectInfo {
      Simulation of Servo Actuators, arXiv:2410.08650, model M3",
 };
 
-impl Effect for LoadFriction {
+impl Law for LoadFriction {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {

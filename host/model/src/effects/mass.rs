@@ -1,6 +1,6 @@
 //! Mass: the link is heavier or lighter than in the model.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site, ValueBehind};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site, ValueBehind};
 
 /// m + dm at the same centre of mass, with the inertia about it in the same proportion.
 ///
@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "mass + added_kg; the inertia about the centre of mass grows in the same proportion",
     parameters: &[Parameter {
         key: "added_kg",
@@ -51,13 +52,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "An, Atkeson, Hollerbach, Model-Based Control of a Robot Manipulator (1988)",
 };
 
-impl Effect for Mass {
+impl Law for Mass {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn value_behind(&self) -> Option<ValueBehind> {

@@ -30,7 +30,6 @@ mod info;
 mod load_friction;
 mod look_up;
 mod mass;
-mod on_slide;
 mod placebo;
 mod position_friction;
 mod pre_sliding;
@@ -58,11 +57,10 @@ pub mod signature;
 mod tests;
 
 pub use base_compliance::BaseSpring;
-pub use effect::{Effect, SMOOTH_DIFFERENCE};
+pub use effect::{Effect, Law, SMOOTH_DIFFERENCE};
 pub use gear::{Coupling, Gear};
-pub use info::{Axis, Confusion, EffectInfo, Needs, Parameter, Scope, Site, ValueBehind};
+pub use info::{Axis, Confusion, EffectInfo, Needs, OnSlide, Parameter, Scope, Site, ValueBehind};
 pub use look_up::{NameMatch, listed, look_up};
-pub use on_slide::on_axis;
 pub use placebo::PLACEBO;
 pub use probe::{Probe, ProbeVariable};
 pub use state::{
@@ -72,61 +70,61 @@ pub use state::{
 pub use torque_scale::TorqueScale;
 
 /// Every effect there is, in the order in which those of one site act.
-pub const EFFECTS: &[&dyn Effect] = &[
-    &delay::Delay,
-    &slew_limit::SlewLimit,
-    &dead_zone::DeadZone,
-    &supply_sensitivity::SupplySensitivity,
-    &supply_sag::SupplySag,
-    &torque_scale::TorqueScale,
-    &speed_limit::SpeedLimit,
-    &torque_saturation::TorqueSaturation,
-    &thermal_drift::ThermalDrift,
-    &fold_back::FoldBack,
-    &gear_compliance::GearCompliance,
-    &gear_backlash::GearBacklash,
-    &coulomb::Coulomb,
-    &stribeck::Stribeck,
-    &load_friction::LoadFriction,
-    &drive_asymmetry::DriveAsymmetry,
-    &bearing_friction::BearingFriction,
-    &direction_asymmetry::DirectionAsymmetry,
-    &position_friction::PositionFriction,
-    &viscous::Viscous,
-    &air_drag::AirDrag,
-    &cable_spring::CableSpring,
-    &cogging::Cogging,
-    &torque_offset::TorqueOffset,
-    &pre_sliding::PreSliding,
-    &com_angle::ComAngle,
-    &mass::Mass,
-    &armature::Armature,
-    &base_tilt::BaseTilt,
-    &base_compliance::BaseCompliance,
-    &encoder_scale::EncoderScale,
-    &encoder_zero::EncoderZero,
-    &grip_slip::GripSlip,
-    &backlash::Backlash,
-    &sensor_lag::SensorLag,
-    &time_offset::TimeOffset,
-    &rate_scale::RateScale,
-    &rate_bias::RateBias,
-    &rate_lag::RateLag,
+pub static EFFECTS: &[Effect] = &[
+    Effect::of(&delay::Delay),
+    Effect::of(&slew_limit::SlewLimit),
+    Effect::of(&dead_zone::DeadZone),
+    Effect::of(&supply_sensitivity::SupplySensitivity),
+    Effect::of(&supply_sag::SupplySag),
+    Effect::of(&torque_scale::TorqueScale),
+    Effect::of(&speed_limit::SpeedLimit),
+    Effect::of(&torque_saturation::TorqueSaturation),
+    Effect::of(&thermal_drift::ThermalDrift),
+    Effect::of(&fold_back::FoldBack),
+    Effect::of(&gear_compliance::GearCompliance),
+    Effect::of(&gear_backlash::GearBacklash),
+    Effect::of(&coulomb::Coulomb),
+    Effect::of(&stribeck::Stribeck),
+    Effect::of(&load_friction::LoadFriction),
+    Effect::of(&drive_asymmetry::DriveAsymmetry),
+    Effect::of(&bearing_friction::BearingFriction),
+    Effect::of(&direction_asymmetry::DirectionAsymmetry),
+    Effect::of(&position_friction::PositionFriction),
+    Effect::of(&viscous::Viscous),
+    Effect::of(&air_drag::AirDrag),
+    Effect::of(&cable_spring::CableSpring),
+    Effect::of(&cogging::Cogging),
+    Effect::of(&torque_offset::TorqueOffset),
+    Effect::of(&pre_sliding::PreSliding),
+    Effect::of(&com_angle::ComAngle),
+    Effect::of(&mass::Mass),
+    Effect::of(&armature::Armature),
+    Effect::of(&base_tilt::BaseTilt),
+    Effect::of(&base_compliance::BaseCompliance),
+    Effect::of(&encoder_scale::EncoderScale),
+    Effect::of(&encoder_zero::EncoderZero),
+    Effect::of(&grip_slip::GripSlip),
+    Effect::of(&backlash::Backlash),
+    Effect::of(&sensor_lag::SensorLag),
+    Effect::of(&time_offset::TimeOffset),
+    Effect::of(&rate_scale::RateScale),
+    Effect::of(&rate_bias::RateBias),
+    Effect::of(&rate_lag::RateLag),
 ];
 
 /// Not physics: what diagnosis runs along to learn what chance gains.
-pub const CONTROLS: &[&dyn Effect] = &[
-    &placebo::Placebo,
-    &probe::TIMING_PROBE,
-    &probe::DRIVE_PROBE,
-    &probe::JOINT_PROBE,
-    &probe::BODY_PROBE,
-    &probe::ENCODER_PROBE,
-    &probe::SENSOR_PROBE,
+pub static CONTROLS: &[Effect] = &[
+    Effect::of(&placebo::Placebo),
+    Effect::of(&probe::TIMING_PROBE),
+    Effect::of(&probe::DRIVE_PROBE),
+    Effect::of(&probe::JOINT_PROBE),
+    Effect::of(&probe::BODY_PROBE),
+    Effect::of(&probe::ENCODER_PROBE),
+    Effect::of(&probe::SENSOR_PROBE),
 ];
 
 /// The effect (or control) of this id, or what a model file last defined by this name.
-pub fn named(id: &str) -> Option<&'static dyn Effect> {
+pub fn named(id: &str) -> Option<Effect> {
     EFFECTS
         .iter()
         .chain(CONTROLS)
@@ -139,7 +137,7 @@ pub fn named(id: &str) -> Option<&'static dyn Effect> {
 pub fn parameter(id: &str, key: &str) -> Option<&'static Parameter> {
     let effect = named(id)?;
     let kinds = [Axis::Hinge, Axis::Slide].into_iter();
-    let kinds = kinds.filter_map(|axis| on_axis(effect, axis));
+    let kinds = kinds.filter_map(|axis| effect.on(axis));
     let mut parameters = kinds.flat_map(|effect| effect.info().parameters);
     parameters.find(|parameter| parameter.key == key)
 }

@@ -3,7 +3,7 @@
 //! Placebos run along with the real candidates. Whatever a placebo gains, chance gains: if one
 //! ranks, nothing is named (permutation control).
 
-use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// tau = c * (measured speed, turned in time by `shift` of the motion).
 #[derive(Debug)]
@@ -19,6 +19,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "torque = coefficient_nm_s_rad * speed measured at another moment",
     parameters: &[Parameter {
         key: "coefficient_nm_s_rad",
@@ -36,13 +37,9 @@ static INFO: EffectInfo = EffectInfo {
      Hypotheses, 3rd ed. (2005)",
 };
 
-impl Effect for Placebo {
+impl Law for Placebo {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

@@ -1,6 +1,6 @@
 //! Friction over position: gears, cables and bearings run heavier at some angles than at others.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// A table of three entries: 0 at the model's zero, two values at +-span, straight lines between
 /// them, and constant beyond.
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = below_nm * min(-q / span_rad, 1) for q < 0, above_nm * min(q / span_rad, 1) \
      for q > 0",
     parameters: &[
@@ -100,13 +101,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for PositionFriction {
+impl Law for PositionFriction {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn difference(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::StepState;
 use super::{
-    AtRest, Effect, EffectInfo, JointState, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+    AtRest, EffectInfo, JointState, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
 };
 
 /// Dahl's law: -k z, dz/dq = 1 - (k z / f) sgn(dq). It remembers the deflection z and the angle at
@@ -28,6 +28,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -stiffness_nm_rad * z, dz/dq = 1 - stiffness_nm_rad * z / torque_nm * sgn(dq)",
     parameters: &[
         Parameter {
@@ -92,13 +93,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 /// Speed, rad/s (m/s), well above which a joint that begins in motion is taken to slide.
 const SLIDES_AT: f64 = 0.05;
 
-impl Effect for PreSliding {
+impl Law for PreSliding {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn difference(&self) -> f64 {

@@ -4,8 +4,8 @@
 //! the measure of how much is left to explain.
 
 use super::{
-    DriveState, Effect, EffectInfo, Encoded, JointState, Needs, Parameter, Rig, Scope, SenseMemory,
-    Site,
+    DriveState, Effect, EffectInfo, Encoded, JointState, Law, Needs, OnSlide, Parameter, Rig,
+    Scope, SenseMemory, Site,
 };
 
 /// Which variable a probe bumps on; stored as its index in a probe's second value.
@@ -95,15 +95,15 @@ impl ProbeVariable {
     }
 
     /// The probe whose hook serves this variable.
-    pub fn probe(self) -> &'static dyn Effect {
-        match self {
+    pub fn probe(self) -> Effect {
+        Effect::of(match self {
             ProbeVariable::Supply | ProbeVariable::BackEmf => &DRIVE_PROBE,
             ProbeVariable::Delay => &TIMING_PROBE,
             ProbeVariable::Inertia | ProbeVariable::Mass | ProbeVariable::Tilt => &BODY_PROBE,
             ProbeVariable::Reading => &ENCODER_PROBE,
             ProbeVariable::ReadingLag | ProbeVariable::ReadingBacklash => &SENSOR_PROBE,
             _ => &JOINT_PROBE,
-        }
+        })
     }
 }
 
@@ -132,6 +132,7 @@ const fn info(id: &'static str, site: Site) -> EffectInfo {
         site,
         scope: Scope::AnyJoint,
         needs: Needs::Nothing,
+        on_slide: OnSlide::Same,
         law: "amplitude * bump((variable - centre) / width)",
         parameters: PARAMETERS,
         looks_like: "whatever is left",
@@ -169,13 +170,9 @@ fn bump(x: f64, values: &[f64]) -> f64 {
     (1.0 - ((x - values[2]) / values[3]).abs()).max(0.0)
 }
 
-impl Effect for Probe {
+impl Law for Probe {
     fn info(&self) -> &'static EffectInfo {
         self.info
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(self.info)
     }
 
     fn delay_s(&self, values: &[f64]) -> f64 {

@@ -1,6 +1,6 @@
 //! Rate bias: a gyro reads a rate at rest.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// w + b.
 #[derive(Debug)]
@@ -19,6 +19,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "reading = d(q)/dt + bias_rad_s",
     parameters: &[Parameter {
         key: "bias_rad_s",
@@ -54,13 +55,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for RateBias {
+impl Law for RateBias {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn rate_bias_rad_s(&self, values: &[f64]) -> f64 {

@@ -1,7 +1,7 @@
 //! Rate lag: the reading of a gyro or tachometer is low-pass filtered.
 
 use super::sensor_lag::filtered;
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// T y' + y = w, as `sensor_lag` filters an angle.
 #[derive(Debug)]
@@ -22,6 +22,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::RateSensor,
+    on_slide: OnSlide::Never,
     law: "time_constant_s * d(reading)/dt + reading = d(q)/dt",
     parameters: &[Parameter {
         key: "time_constant_s",
@@ -42,7 +43,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Ljung, System Identification, 2nd ed., section 4.2",
 };
 
-impl Effect for RateLag {
+impl Law for RateLag {
     fn info(&self) -> &'static EffectInfo {
         &INFO
     }

@@ -1,6 +1,6 @@
 //! Rate scale: a gyro or tachometer reads a share of the rate.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// s w.
 #[derive(Debug)]
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::RateSensor,
+    on_slide: OnSlide::Never,
     law: "reading = factor * d(q)/dt",
     parameters: &[Parameter {
         key: "factor",
@@ -40,7 +41,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "IEEE Std 952-1997, section 5.3",
 };
 
-impl Effect for RateScale {
+impl Law for RateScale {
     fn info(&self) -> &'static EffectInfo {
         &INFO
     }

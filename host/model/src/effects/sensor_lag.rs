@@ -1,6 +1,6 @@
 //! Sensor lag: the reading is low-pass filtered.
 
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
 /// straight line over the step, or a rate along a parabola.
@@ -22,6 +22,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "time_constant_s * d(reading)/dt + reading = q",
     parameters: &[Parameter {
         key: "time_constant_s",
@@ -48,13 +49,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Ljung, System Identification, 2nd ed., section 4.2",
 };
 
-impl Effect for SensorLag {
+impl Law for SensorLag {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {

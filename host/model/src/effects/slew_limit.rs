@@ -1,7 +1,7 @@
 //! Slew limit: a servo's profile, or a driver's ramp, lets its input change no faster than so much.
 
 use super::StepState;
-use super::{AtRest, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// |d input / dt| <= r. It remembers the input that it has reached.
 #[derive(Debug)]
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Command,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "the input that is obeyed follows the one that arrives by at most rate_per_s a second",
     parameters: &[Parameter {
         key: "rate_per_s",
@@ -42,13 +43,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "ROBOTIS e-Manual, XL330-M288, profile acceleration and profile velocity",
 };
 
-impl Effect for SlewLimit {
+impl Law for SlewLimit {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn remembers(&self) -> bool {

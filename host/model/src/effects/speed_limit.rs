@@ -1,6 +1,6 @@
 //! Speed limit: the back-EMF of the motor takes torque away as the joint turns.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// tau - tau_full w / w_0, with the no-load speed w_0.
 #[derive(Debug)]
@@ -22,6 +22,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque - full_torque * w / no_load_speed_rad_s, while energised",
     parameters: &[Parameter {
         key: "no_load_speed_rad_s",
@@ -64,13 +65,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for SpeedLimit {
+impl Law for SpeedLimit {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {

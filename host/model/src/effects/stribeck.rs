@@ -1,6 +1,6 @@
 //! Stiction and Stribeck friction: more resistance at rest than in motion.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// tau_x exp(-|w| / w_s), on top of the sliding friction.
 ///
@@ -25,6 +25,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = excess_nm * exp(-|w| / speed_rad_s), against the motion",
     parameters: &[
         Parameter {
@@ -88,13 +89,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for Stribeck {
+impl Law for Stribeck {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn difference(&self) -> f64 {

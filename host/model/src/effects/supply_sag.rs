@@ -1,6 +1,6 @@
 //! Supply sag: the source gives way under the current the drive draws.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// tau (1 - d |u|).
 #[derive(Debug)]
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "torque * (1 - drop_share * |u|)",
     parameters: &[Parameter {
         key: "drop_share",
@@ -47,13 +48,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Horowitz, Hill, The Art of Electronics, 3rd ed., chapter 1 (source resistance)",
 };
 
-impl Effect for SupplySag {
+impl Law for SupplySag {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {

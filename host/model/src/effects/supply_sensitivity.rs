@@ -1,6 +1,6 @@
 //! Supply sensitivity: the torque follows the volts.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// tau (1 + s (V / V_n - 1)).
 #[derive(Debug)]
@@ -13,6 +13,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Supply,
+    on_slide: OnSlide::Same,
     law: "torque * (1 + sensitivity * (V / V_nominal - 1))",
     parameters: &[Parameter {
         key: "sensitivity",
@@ -35,13 +36,9 @@ static INFO: EffectInfo = EffectInfo {
      (2009), chapter 5",
 };
 
-impl Effect for SupplySensitivity {
+impl Law for SupplySensitivity {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {

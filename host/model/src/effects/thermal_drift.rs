@@ -2,7 +2,7 @@
 
 use super::StepState;
 use super::{
-    AtRest, DriveState, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+    AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
 };
 
 /// tau / (1 + r x), T x' = u^2 - x. It remembers x, the warmth: 0 cold, 1 after long at full duty.
@@ -23,6 +23,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x = 0 where a log \
      begins",
     parameters: &[
@@ -57,13 +58,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Mellor, Roberts, Turner, IEE Proceedings B 138 (1991) 205, with one body",
 };
 
-impl Effect for ThermalDrift {
+impl Law for ThermalDrift {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn remembers(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Time offset: the column of a reading holds what the encoder read at another time.
 
-use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// y(t) = q(t - T), of either sign. The offset is one of the log: a loop that reads the encoder
 /// itself, in a servo or on a board, knows nothing of it.
@@ -28,6 +28,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "reading(t) = q(t - offset_s)",
     parameters: &[Parameter {
         key: "offset_s",
@@ -52,13 +53,9 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Furgale, Rehder, Siegwart, IROS 2013, 1280 (temporal calibration of sensors)",
 };
 
-impl Effect for TimeOffset {
+impl Law for TimeOffset {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     /// The columns of one log need not be off by the same time, and a log whose readings are all

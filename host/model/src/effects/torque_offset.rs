@@ -1,6 +1,6 @@
 //! Torque offset: something pulls at the joint, always alike.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// A constant torque.
 #[derive(Debug)]
@@ -20,6 +20,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = offset_nm, at every angle and speed, whether the drive is on or off",
     parameters: &[Parameter {
         key: "offset_nm",
@@ -60,13 +61,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for TorqueOffset {
+impl Law for TorqueOffset {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn torque(&self, values: &[f64], _at: &JointState) -> f64 {

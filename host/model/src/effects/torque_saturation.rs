@@ -1,6 +1,6 @@
 //! Torque saturation: the drive gives no more than a limit.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// max(-limit, min(limit, tau)).
 #[derive(Debug)]
@@ -19,6 +19,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque clipped to -limit_nm..limit_nm",
     parameters: &[Parameter {
         key: "limit_nm",
@@ -58,13 +59,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for TorqueSaturation {
+impl Law for TorqueSaturation {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {

@@ -1,7 +1,7 @@
 //! Torque scale: the torque constant or the gear ratio differs from the data sheet.
 
 use super::{
-    AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope, ValueBehind,
+    AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope, ValueBehind,
 };
 
 /// s tau.
@@ -22,6 +22,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "factor * torque",
     parameters: &[Parameter {
         key: "factor",
@@ -48,13 +49,9 @@ static INFO: EffectInfo = EffectInfo {
      (2009), chapter 5",
 };
 
-impl Effect for TorqueScale {
+impl Law for TorqueScale {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
     }
 
     fn value_behind(&self) -> Option<ValueBehind> {

@@ -1,6 +1,6 @@
 //! Viscous friction: resistance in proportion to speed.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// -c w.
 #[derive(Debug)]
@@ -22,6 +22,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -coefficient_nm_s_rad * w",
     parameters: &[Parameter {
         key: "coefficient_nm_s_rad",
@@ -62,13 +63,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for Viscous {
+impl Law for Viscous {
     fn info(&self) -> &'static EffectInfo {
         &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
     }
 
     fn is_of_servo(&self) -> bool {

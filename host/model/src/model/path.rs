@@ -47,9 +47,9 @@ impl ParameterPath {
     }
 
     /// Address of a value of an effect at a joint; `None` as [`EffectInstance`] has it.
-    pub fn at(effect: &'static dyn Effect, joint: Option<usize>, parameter: usize) -> Self {
-        let key = |effect: &dyn Effect| effect.info().parameters.get(parameter).map(|p| p.key);
-        let axis = match effects::on_axis(effect, Axis::Hinge) {
+    pub fn at(effect: Effect, joint: Option<usize>, parameter: usize) -> Self {
+        let key = |effect: Effect| effect.info().parameters.get(parameter).map(|p| p.key);
+        let axis = match effect.on(Axis::Hinge) {
             Some(hinge) if key(hinge) == key(effect) => Axis::Hinge,
             _ => effect.axis(),
         };
@@ -166,7 +166,7 @@ impl ParameterPath {
         else {
             return None;
         };
-        let effect = effects::on_axis(effects::named(id)?, axis)?;
+        let effect = effects::named(id)?.on(axis)?;
         effect.info().parameters.get(parameter)
     }
 }

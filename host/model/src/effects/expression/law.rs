@@ -1,6 +1,6 @@
 //! A user's law as an effect: a torque on the joint, given as an expression.
 
-use super::super::{AtRest, Effect, EffectInfo, JointState, Slope};
+use super::super::{AtRest, EffectInfo, JointState, Law, Slope};
 use super::program::{Program, Slot};
 
 /// Most values of an effect.
@@ -17,7 +17,7 @@ pub(super) struct ExpressionLaw {
     pub program: Program,
 }
 
-impl Effect for ExpressionLaw {
+impl Law for ExpressionLaw {
     fn info(&self) -> &'static EffectInfo {
         self.info
     }

@@ -12,7 +12,7 @@ pub use law::MOST_VALUES;
 pub use reason::ExpressionReason;
 pub use syntax::{CONSTANTS, FUNCTIONS, Misplaced, VARIABLES};
 
-use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, JointState, Needs, OnSlide, Parameter, Scope, Site};
 use law::ExpressionLaw;
 use program::Program;
 use std::sync::{LazyLock, RwLock};
@@ -65,14 +65,14 @@ static LAWS: LazyLock<RwLock<ExpressionLaws>> = LazyLock::new(RwLock::default);
 ///
 /// # Errors
 /// Names that are taken, bounds without room, an expression that is no law.
-pub fn effect(definition: &LawDefinition) -> Result<&'static dyn Effect, DefinitionFault> {
+pub fn effect(definition: &LawDefinition) -> Result<Effect, DefinitionFault> {
     let mut laws = LAWS.write().unwrap_or_else(|broken| broken.into_inner());
     if let Some(index) = laws.iter().position(|(known, _)| known == definition) {
         // The last definition of a name is what the name alone stands for.
         let known = laws.remove(index);
         let effect = known.1;
         laws.push(known);
-        return Ok(effect);
+        return Ok(Effect::of(effect));
     }
     if laws.len() >= MOST_LAWS {
         let reason = ExpressionReason::TooManyLaws { most: MOST_LAWS };
@@ -80,23 +80,20 @@ pub fn effect(definition: &LawDefinition) -> Result<&'static dyn Effect, Definit
     }
     let law: &'static ExpressionLaw = Box::leak(Box::new(compiled(definition)?));
     laws.push((definition.clone(), law));
-    Ok(law)
+    Ok(Effect::of(law))
 }
 
 /// The effect that was last defined by this name.
-pub(super) fn named(id: &str) -> Option<&'static dyn Effect> {
+pub(super) fn named(id: &str) -> Option<Effect> {
     let laws = LAWS.read().unwrap_or_else(|broken| broken.into_inner());
     let found = laws.iter().rev().find(|(_, law)| law.info.id == id)?;
-    Some(found.1)
+    Some(Effect::of(found.1))
 }
 
 /// The effects of all definitions so far.
-pub(crate) fn defined() -> Vec<&'static dyn Effect> {
+pub(crate) fn defined() -> Vec<Effect> {
     let laws = LAWS.read().unwrap_or_else(|broken| broken.into_inner());
-    let effects = laws
-        .iter()
-        .rev()
-        .map(|(_, law)| *law as &'static dyn Effect);
+    let effects = laws.iter().rev().map(|(_, law)| Effect::of(*law));
     effects.collect()
 }
 
@@ -218,6 +215,7 @@ fn info(definition: &LawDefinition, off: &[Option<f64>]) -> &'static EffectInfo 
         scope: Scope::AnyJoint,
         site: Site::Joint,
         needs: Needs::Nothing,
+        on_slide: OnSlide::Never,
         parameters: Box::leak(parameters.into_boxed_slice()),
         looks_like: "what its law says",
         confused_with: &[],

@@ -11,6 +11,7 @@ mod infos;
 mod laws;
 mod off;
 mod sensors;
+mod slides;
 mod tables;
 
 /// Units and what a key of that unit ends in.
@@ -38,7 +39,7 @@ fn parameters() -> impl Iterator<Item = (&'static str, &'static Parameter)> {
     infos().flat_map(|info| info.parameters.iter().map(|parameter| (info.id, parameter)))
 }
 
-fn effect(id: &str) -> &'static dyn Effect {
+fn effect(id: &str) -> Effect {
     named(id).unwrap()
 }
 

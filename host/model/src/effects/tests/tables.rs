@@ -8,7 +8,7 @@ fn keys_units_and_numbers_on_both_axes() {
     let mut lines = String::new();
     for effect in EFFECTS.iter().chain(CONTROLS) {
         for axis in [Axis::Hinge, Axis::Slide] {
-            let Some(own) = on_axis(*effect, axis) else {
+            let Some(own) = effect.on(axis) else {
                 let id = effect.info().id;
                 writeln!(lines, "{id} {axis:?}: cannot act").unwrap();
                 continue;
