@@ -7,26 +7,24 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 pub struct Armature;
 
 /// Inertia of the rotor as seen at the joint.
-pub(super) const ROTOR: Parameter = Parameter {
-    key: "inertia_kg_m2",
-    unit: "kg m^2",
-    meaning: "rotor inertia times the square of the gear ratio",
-    off: Some(0.0),
-    typical: (0.0005, 0.02),
-    bounds: (0.0, 1.0),
-    starts: &[0.002, 0.01],
-};
+pub(super) const ROTOR: Parameter = Parameter::of(
+    "inertia_kg_m2",
+    "rotor inertia times the square of the gear ratio",
+)
+.off(0.0)
+.typical(0.0005, 0.02)
+.bounds(0.0, 1.0)
+.starts(&[0.002, 0.01]);
 
 /// The same at a joint that slides.
-pub(super) const ROTOR_ON_SLIDE: Parameter = Parameter {
-    key: "inertia_kg",
-    unit: "kg",
-    meaning: "rotor inertia over the square of the displacement per turn in rad",
-    off: Some(0.0),
-    typical: (0.01, 1.0),
-    bounds: (0.0, 100.0),
-    starts: &[0.05, 0.3],
-};
+pub(super) const ROTOR_ON_SLIDE: Parameter = Parameter::of(
+    "inertia_kg",
+    "rotor inertia over the square of the displacement per turn in rad",
+)
+.off(0.0)
+.typical(0.01, 1.0)
+.bounds(0.0, 100.0)
+.starts(&[0.05, 0.3]);
 
 static INFO: EffectInfo = EffectInfo {
     id: "armature",

@@ -24,15 +24,11 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "the reading stays while |q - reading| <= gap_rad / 2, else it follows at that distance",
-    parameters: &[Parameter {
-        key: "gap_rad",
-        unit: "rad",
-        meaning: "free play, from flank to flank",
-        off: Some(0.0),
-        typical: (0.002, 0.05),
-        bounds: (0.0, 0.5),
-        starts: &[0.01, 0.03],
-    }],
+    parameters: &[Parameter::of("gap_rad", "free play, from flank to flank")
+        .off(0.0)
+        .typical(0.002, 0.05)
+        .bounds(0.0, 0.5)
+        .starts(&[0.01, 0.03])],
     looks_like: "after each reversal the reading stands still over a fixed angle, whatever the \
      amplitude, the load or the speed",
     confused_with: &[
@@ -56,15 +52,11 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "the reading stays while |q - reading| <= gap_m / 2, else it follows at that distance",
-    parameters: &[Parameter {
-        key: "gap_m",
-        unit: "m",
-        meaning: "free play, from flank to flank",
-        off: Some(0.0),
-        typical: (0.0001, 0.005),
-        bounds: (0.0, 0.1),
-        starts: &[0.001, 0.003],
-    }],
+    parameters: &[Parameter::of("gap_m", "free play, from flank to flank")
+        .off(0.0)
+        .typical(0.0001, 0.005)
+        .bounds(0.0, 0.1)
+        .starts(&[0.001, 0.003])],
     ..INFO
 };
 

@@ -29,33 +29,25 @@ static INFO: EffectInfo = EffectInfo {
     law: "mass_kg * x'' + c * x' + stiffness_n_m * x = force of the chain, c = 2 * damping_ratio * \
      sqrt(stiffness_n_m * mass_kg); likewise upward",
     parameters: &[
-        Parameter {
-            key: "stiffness_n_m",
-            unit: "N/m",
-            meaning: "force per displacement, the same sideways and upward",
-            off: Some(f64::INFINITY),
-            typical: (50.0, 20_000.0),
-            bounds: (5.0, 1e7),
-            starts: &[100.0, 400.0, 1600.0],
-        },
-        Parameter {
-            key: "mass_kg",
-            unit: "kg",
-            meaning: "what moves along with the base",
-            off: None,
-            typical: (0.1, 5.0),
-            bounds: (0.05, 100.0),
-            starts: &[0.5],
-        },
-        Parameter {
-            key: "damping_ratio",
-            unit: "1",
-            meaning: "damping, as a share of what lets the empty base settle without ringing",
-            off: None,
-            typical: (0.02, 0.3),
-            bounds: (0.0, 1.0),
-            starts: &[0.1],
-        },
+        Parameter::of(
+            "stiffness_n_m",
+            "force per displacement, the same sideways and upward",
+        )
+        .off(f64::INFINITY)
+        .typical(50.0, 20_000.0)
+        .bounds(5.0, 1e7)
+        .starts(&[100.0, 400.0, 1600.0]),
+        Parameter::of("mass_kg", "what moves along with the base")
+            .typical(0.1, 5.0)
+            .bounds(0.05, 100.0)
+            .starts(&[0.5]),
+        Parameter::of(
+            "damping_ratio",
+            "damping, as a share of what lets the empty base settle without ringing",
+        )
+        .typical(0.02, 0.3)
+        .bounds(0.0, 1.0)
+        .starts(&[0.1]),
     ],
     looks_like: "a slow swing that all joints share and that no drive makes; fast motions are \
      wrong, slow ones right",

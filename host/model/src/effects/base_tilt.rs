@@ -23,15 +23,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "gravity turned by angle_rad in the plane of the rig",
-    parameters: &[Parameter {
-        key: "angle_rad",
-        unit: "rad",
-        meaning: "tilt of the base, counter-clockwise",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-1.6, 1.6),
-        starts: &[0.02, -0.02],
-    }],
+    parameters: &[
+        Parameter::of("angle_rad", "tilt of the base, counter-clockwise")
+            .off(0.0)
+            .typical(-0.05, 0.05)
+            .bounds(-1.6, 1.6)
+            .starts(&[0.02, -0.02]),
+    ],
     looks_like: "a static error with the same phase in the world on every link",
     confused_with: &[
         "com_angle: both shift the angle at which gravity vanishes; a centre of mass keeps its \

@@ -21,15 +21,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::BearingLoad,
     on_slide: OnSlide::Never,
     law: "friction = radius_m * bearing force, against the motion",
-    parameters: &[Parameter {
-        key: "radius_m",
-        unit: "m",
-        meaning: "friction coefficient times bearing radius",
-        off: Some(0.0),
-        typical: (1e-5, 0.005),
-        bounds: (0.0, 0.05),
-        starts: &[0.001, 0.0001],
-    }],
+    parameters: &[
+        Parameter::of("radius_m", "friction coefficient times bearing radius")
+            .off(0.0)
+            .typical(1e-5, 0.005)
+            .bounds(0.0, 0.05)
+            .starts(&[0.001, 0.0001]),
+    ],
     looks_like: "a free swing loses more angle per period while it is wide, since the swing itself \
      loads the bearing, and still stops off the bottom",
     confused_with: &[

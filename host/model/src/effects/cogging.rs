@@ -25,36 +25,25 @@ static INFO: EffectInfo = EffectInfo {
     on_slide: OnSlide::Never,
     law: "torque = amplitude_nm * sin(periods_per_turn * q + phase_rad)",
     parameters: &[
-        Parameter {
-            key: "amplitude_nm",
-            unit: "N m",
-            meaning: "height of the ripple",
-            off: Some(0.0),
-            typical: (0.002, 0.1),
-            bounds: (0.0, 5.0),
-            starts: &[0.01, 0.05],
-        },
-        Parameter {
-            key: "periods_per_turn",
-            unit: "1",
-            meaning: "ripples in one turn of the joint; one or two would be gravity, not teeth or \
+        Parameter::of("amplitude_nm", "height of the ripple")
+            .off(0.0)
+            .typical(0.002, 0.1)
+            .bounds(0.0, 5.0)
+            .starts(&[0.01, 0.05]),
+        Parameter::of(
+            "periods_per_turn",
+            "ripples in one turn of the joint; one or two would be gravity, not teeth or \
              poles",
-            off: None,
-            typical: (4.0, 60.0),
-            bounds: (3.0, 200.0),
-            starts: &[
-                12.0, 4.0, 6.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0, 48.0, 60.0, 80.0, 100.0, 150.0,
-            ],
-        },
-        Parameter {
-            key: "phase_rad",
-            unit: "rad",
-            meaning: "phase of the ripple at angle zero",
-            off: None,
-            typical: (-PI, PI),
-            bounds: (-20.0, 20.0),
-            starts: &[0.0, PI / 2.0, PI, -PI / 2.0],
-        },
+        )
+        .typical(4.0, 60.0)
+        .bounds(3.0, 200.0)
+        .starts(&[
+            12.0, 4.0, 6.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0, 48.0, 60.0, 80.0, 100.0, 150.0,
+        ]),
+        Parameter::of("phase_rad", "phase of the ripple at angle zero")
+            .typical(-PI, PI)
+            .bounds(-20.0, 20.0)
+            .starts(&[0.0, PI / 2.0, PI, -PI / 2.0]),
     ],
     looks_like: "the residual torque repeats over the joint angle at every speed; in time its \
      frequency grows with the speed",

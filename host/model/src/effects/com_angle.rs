@@ -23,15 +23,14 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "the centre of mass of the link is turned by angle_rad about its joint",
-    parameters: &[Parameter {
-        key: "angle_rad",
-        unit: "rad",
-        meaning: "angle of the centre of mass off its place in the model",
-        off: Some(0.0),
-        typical: (-0.2, 0.2),
-        bounds: (-3.2, 3.2),
-        starts: &[0.05, -0.05],
-    }],
+    parameters: &[Parameter::of(
+        "angle_rad",
+        "angle of the centre of mass off its place in the model",
+    )
+    .off(0.0)
+    .typical(-0.2, 0.2)
+    .bounds(-3.2, 3.2)
+    .starts(&[0.05, -0.05])],
     looks_like: "a static error that follows the cosine of the angle from hanging; the arm hangs \
      off its zero",
     confused_with: &[

@@ -22,15 +22,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = torque_nm * sgn(w), against the motion; at rest it holds up to torque_nm",
-    parameters: &[Parameter {
-        key: "torque_nm",
-        unit: "N m",
-        meaning: "friction torque, the same at every speed",
-        off: Some(0.0),
-        typical: (0.005, 0.2),
-        bounds: (0.0, 10.0),
-        starts: &[0.02, 0.1],
-    }],
+    parameters: &[
+        Parameter::of("torque_nm", "friction torque, the same at every speed")
+            .off(0.0)
+            .typical(0.005, 0.2)
+            .bounds(0.0, 10.0)
+            .starts(&[0.02, 0.1]),
+    ],
     looks_like: "the residual torque is a square wave in step with the sign of the speed; a free \
      swing loses the same angle every half period (straight envelope) and stops off the bottom",
     confused_with: &[
@@ -51,15 +49,13 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction = force_n * sgn(w), against the motion; at rest it holds up to force_n",
-    parameters: &[Parameter {
-        key: "force_n",
-        unit: "N",
-        meaning: "friction force, the same at every speed",
-        off: Some(0.0),
-        typical: (0.05, 10.0),
-        bounds: (0.0, 1000.0),
-        starts: &[0.5, 5.0],
-    }],
+    parameters: &[
+        Parameter::of("force_n", "friction force, the same at every speed")
+            .off(0.0)
+            .typical(0.05, 10.0)
+            .bounds(0.0, 1000.0)
+            .starts(&[0.5, 5.0]),
+    ],
     ..INFO
 };
 

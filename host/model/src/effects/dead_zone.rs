@@ -17,24 +17,22 @@ static INFO: EffectInfo = EffectInfo {
     on_slide: OnSlide::Same,
     law: "applied duty = 0 while |u| <= width, else u + punch * sgn(u)",
     parameters: &[
-        Parameter {
-            key: "width",
-            unit: "1",
-            meaning: "share of full range below which the command does nothing",
-            off: Some(0.0),
-            typical: (0.02, 0.15),
-            bounds: (0.0, 0.6),
-            starts: &[0.05, 0.12],
-        },
-        Parameter {
-            key: "punch",
-            unit: "1",
-            meaning: "duty added to every command outside the zone; below zero it takes away",
-            off: Some(0.0),
-            typical: (0.0, 0.05),
-            bounds: (-0.3, 0.3),
-            starts: &[0.0, 0.03],
-        },
+        Parameter::of(
+            "width",
+            "share of full range below which the command does nothing",
+        )
+        .off(0.0)
+        .typical(0.02, 0.15)
+        .bounds(0.0, 0.6)
+        .starts(&[0.05, 0.12]),
+        Parameter::of(
+            "punch",
+            "duty added to every command outside the zone; below zero it takes away",
+        )
+        .off(0.0)
+        .typical(0.0, 0.05)
+        .bounds(-0.3, 0.3)
+        .starts(&[0.0, 0.03]),
     ],
     looks_like: "near zero command the arm rests anywhere on a plateau of error; under feedback it \
      hunts in a limit cycle; with the torque off nothing remains of it",

@@ -23,15 +23,11 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "the drive applies u(t - delay_s)",
-    parameters: &[Parameter {
-        key: "delay_s",
-        unit: "s",
-        meaning: "age of the input when it acts",
-        off: Some(0.0),
-        typical: (0.005, 0.1),
-        bounds: (0.0, 0.5),
-        starts: &[0.02, 0.08],
-    }],
+    parameters: &[Parameter::of("delay_s", "age of the input when it acts")
+        .off(0.0)
+        .typical(0.005, 0.1)
+        .bounds(0.0, 0.5)
+        .starts(&[0.02, 0.08])],
     looks_like: "the simulated motion runs ahead of the measured one by the same time at every \
      speed; input and residual correlate best at that lag",
     confused_with: &[

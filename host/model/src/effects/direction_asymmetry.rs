@@ -20,15 +20,14 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction += half_difference_nm * sgn(w)",
-    parameters: &[Parameter {
-        key: "half_difference_nm",
-        unit: "N m",
-        meaning: "half of forward minus backward friction",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-5.0, 5.0),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of(
+        "half_difference_nm",
+        "half of forward minus backward friction",
+    )
+    .off(0.0)
+    .typical(-0.05, 0.05)
+    .bounds(-5.0, 5.0)
+    .starts(&[0.01, -0.01])],
     looks_like: "the residual torque has one constant sign while the joint moves, whichever way it \
      goes, and none while it rests",
     confused_with: &[
@@ -47,15 +46,14 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction += half_difference_n * sgn(w)",
-    parameters: &[Parameter {
-        key: "half_difference_n",
-        unit: "N",
-        meaning: "half of forward minus backward friction",
-        off: Some(0.0),
-        typical: (-2.0, 2.0),
-        bounds: (-500.0, 500.0),
-        starts: &[0.3, -0.3],
-    }],
+    parameters: &[Parameter::of(
+        "half_difference_n",
+        "half of forward minus backward friction",
+    )
+    .off(0.0)
+    .typical(-2.0, 2.0)
+    .bounds(-500.0, 500.0)
+    .starts(&[0.3, -0.3])],
     ..INFO
 };
 

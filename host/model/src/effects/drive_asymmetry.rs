@@ -25,24 +25,22 @@ static INFO: EffectInfo = EffectInfo {
     law: "friction = |motor_factor * motor torque - outside_factor * outside torque|, against the \
           motion",
     parameters: &[
-        Parameter {
-            key: "motor_factor",
-            unit: "1",
-            meaning: "share of the motor's torque that the gear loses",
-            off: Some(0.0),
-            typical: (0.02, 0.3),
-            bounds: (0.0, 2.0),
-            starts: &[0.2, 0.05],
-        },
-        Parameter {
-            key: "outside_factor",
-            unit: "1",
-            meaning: "share of the outside torque that the gear loses",
-            off: Some(0.0),
-            typical: (0.02, 0.3),
-            bounds: (0.0, 2.0),
-            starts: &[0.05, 0.2],
-        },
+        Parameter::of(
+            "motor_factor",
+            "share of the motor's torque that the gear loses",
+        )
+        .off(0.0)
+        .typical(0.02, 0.3)
+        .bounds(0.0, 2.0)
+        .starts(&[0.2, 0.05]),
+        Parameter::of(
+            "outside_factor",
+            "share of the outside torque that the gear loses",
+        )
+        .off(0.0)
+        .typical(0.02, 0.3)
+        .bounds(0.0, 2.0)
+        .starts(&[0.05, 0.2]),
     ],
     looks_like: "lifting a load loses another share of the torque than lowering it; with torque \
                  off the arm swings with less friction, or more, than under its drive",

@@ -22,15 +22,11 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "reading = factor * q",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "angle read over true angle",
-        off: Some(1.0),
-        typical: (0.95, 1.05),
-        bounds: (0.5, 2.0),
-        starts: &[0.98, 1.02],
-    }],
+    parameters: &[Parameter::of("factor", "angle read over true angle")
+        .off(1.0)
+        .typical(0.95, 1.05)
+        .bounds(0.5, 2.0)
+        .starts(&[0.98, 1.02])],
     looks_like: "an error in proportion to the angle from the encoder's zero, the same at rest and \
      in motion",
     confused_with: &[

@@ -28,15 +28,10 @@ static INFO: EffectInfo = EffectInfo {
      d(w_m)/dt = motor - torque",
     parameters: &[
         ROTOR,
-        Parameter {
-            key: "gap_rad",
-            unit: "rad",
-            meaning: "free play, from flank to flank",
-            off: None,
-            typical: (0.005, 0.1),
-            bounds: (0.0, 0.5),
-            starts: &[0.03, 0.1],
-        },
+        Parameter::of("gap_rad", "free play, from flank to flank")
+            .typical(0.005, 0.1)
+            .bounds(0.0, 0.5)
+            .starts(&[0.03, 0.1]),
     ],
     looks_like: "whenever the torque turns, the arm is free for a moment and then knocked; it \
      rattles about a point of no load",
@@ -59,15 +54,10 @@ static ON_SLIDE: EffectInfo = EffectInfo {
      motor - force",
     parameters: &[
         ROTOR_ON_SLIDE,
-        Parameter {
-            key: "gap_m",
-            unit: "m",
-            meaning: "free play, from flank to flank",
-            off: None,
-            typical: (0.0002, 0.005),
-            bounds: (0.0, 0.1),
-            starts: &[0.001, 0.003],
-        },
+        Parameter::of("gap_m", "free play, from flank to flank")
+            .typical(0.0002, 0.005)
+            .bounds(0.0, 0.1)
+            .starts(&[0.001, 0.003]),
     ],
     ..INFO
 };

@@ -9,15 +9,13 @@ use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
 pub struct GearCompliance;
 
 /// Damping of the spring, as a share of what lets the motor settle without ringing.
-const DAMPING: Parameter = Parameter {
-    key: "damping_ratio",
-    unit: "1",
-    meaning: "damping, as a share of what lets the motor settle without ringing",
-    off: None,
-    typical: (0.02, 0.3),
-    bounds: (0.0, 0.7),
-    starts: &[0.15],
-};
+const DAMPING: Parameter = Parameter::of(
+    "damping_ratio",
+    "damping, as a share of what lets the motor settle without ringing",
+)
+.typical(0.02, 0.3)
+.bounds(0.0, 0.7)
+.starts(&[0.15]);
 
 static INFO: EffectInfo = EffectInfo {
     id: "gear_compliance",
@@ -47,15 +45,13 @@ static INFO: EffectInfo = EffectInfo {
      sqrt(stiffness_nm_rad * inertia_kg_m2); inertia_kg_m2 * d(w_m)/dt = motor - torque",
     parameters: &[
         ROTOR,
-        Parameter {
-            key: "stiffness_nm_rad",
-            unit: "N m/rad",
-            meaning: "torque per angle by which the motor is ahead of the joint",
-            off: None,
-            typical: (0.5, 50.0),
-            bounds: (0.05, 5000.0),
-            starts: &[1.0, 4.0],
-        },
+        Parameter::of(
+            "stiffness_nm_rad",
+            "torque per angle by which the motor is ahead of the joint",
+        )
+        .typical(0.5, 50.0)
+        .bounds(0.05, 5000.0)
+        .starts(&[1.0, 4.0]),
         DAMPING,
     ],
     looks_like: "after a step of the drive the arm rings at a frequency that gravity does not \
@@ -80,15 +76,13 @@ static ON_SLIDE: EffectInfo = EffectInfo {
      sqrt(stiffness_n_m * inertia_kg); inertia_kg * d(w_m)/dt = motor - force",
     parameters: &[
         ROTOR_ON_SLIDE,
-        Parameter {
-            key: "stiffness_n_m",
-            unit: "N/m",
-            meaning: "force per displacement by which the motor is ahead of the joint",
-            off: None,
-            typical: (50.0, 50_000.0),
-            bounds: (1.0, 1e7),
-            starts: &[100.0, 1000.0],
-        },
+        Parameter::of(
+            "stiffness_n_m",
+            "force per displacement by which the motor is ahead of the joint",
+        )
+        .typical(50.0, 50_000.0)
+        .bounds(1.0, 1e7)
+        .starts(&[100.0, 1000.0]),
         DAMPING,
     ],
     ..INFO

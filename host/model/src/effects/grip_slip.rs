@@ -18,16 +18,15 @@ static INFO: EffectInfo = EffectInfo {
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "d(w_s)/dt = acceleration_rad_s2 * sgn(w - w_s) while the shaft slips, else w_s = w; \
      d(reading)/dt = w_s",
-    parameters: &[Parameter {
-        key: "acceleration_rad_s2",
-        unit: "rad/s^2",
-        meaning: "largest acceleration that the grip passes on: its torque over the shaft's \
-         inertia",
-        off: Some(f64::INFINITY),
-        typical: (8.0, 200.0),
-        bounds: (1.0, 1e5),
-        starts: &[30.0, 80.0],
-    }],
+    parameters: &[Parameter::of(
+        "acceleration_rad_s2",
+        "largest acceleration that the grip passes on: its torque over the shaft's \
+             inertia",
+    )
+    .off(f64::INFINITY)
+    .typical(8.0, 200.0)
+    .bounds(1.0, 1e5)
+    .starts(&[30.0, 80.0])],
     looks_like: "the zero of the reading jumps wherever the motion is hard, and stays where it \
      jumped to; gentle motion is read rightly",
     confused_with: &[
@@ -44,15 +43,14 @@ static INFO: EffectInfo = EffectInfo {
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "d(w_s)/dt = acceleration_m_s2 * sgn(w - w_s) while the tape slips, else w_s = w; \
      d(reading)/dt = w_s",
-    parameters: &[Parameter {
-        key: "acceleration_m_s2",
-        unit: "m/s^2",
-        meaning: "largest acceleration that the grip passes on: its force over the tape's mass",
-        off: Some(f64::INFINITY),
-        typical: (0.5, 20.0),
-        bounds: (0.02, 1e4),
-        starts: &[1.0, 4.0],
-    }],
+    parameters: &[Parameter::of(
+        "acceleration_m_s2",
+        "largest acceleration that the grip passes on: its force over the tape's mass",
+    )
+    .off(f64::INFINITY)
+    .typical(0.5, 20.0)
+    .bounds(0.02, 1e4)
+    .starts(&[1.0, 4.0])],
     ..INFO
 };
 

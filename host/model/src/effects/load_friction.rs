@@ -22,15 +22,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::GearLoad,
     on_slide: OnSlide::Same,
     law: "friction = factor * gear load, against the motion",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "friction over the torque the gear transmits",
-        off: Some(0.0),
-        typical: (0.02, 0.3),
-        bounds: (0.0, 2.0),
-        starts: &[0.05, 0.2],
-    }],
+    parameters: &[
+        Parameter::of("factor", "friction over the torque the gear transmits")
+            .off(0.0)
+            .typical(0.02, 0.3)
+            .bounds(0.0, 2.0)
+            .starts(&[0.05, 0.2]),
+    ],
     looks_like: "the resistance grows where the arm is held level and falls where it hangs; a \
      heavier load sticks harder",
     confused_with: &[

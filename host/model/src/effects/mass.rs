@@ -27,15 +27,14 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "mass + added_kg; the inertia about the centre of mass grows in the same proportion",
-    parameters: &[Parameter {
-        key: "added_kg",
-        unit: "kg",
-        meaning: "mass missing in the model; below zero: too much in it",
-        off: Some(0.0),
-        typical: (-0.1, 0.3),
-        bounds: (-1.0, 5.0),
-        starts: &[0.05, -0.05],
-    }],
+    parameters: &[Parameter::of(
+        "added_kg",
+        "mass missing in the model; below zero: too much in it",
+    )
+    .off(0.0)
+    .typical(-0.1, 0.3)
+    .bounds(-1.0, 5.0)
+    .starts(&[0.05, -0.05])],
     looks_like: "gravity and inertia are wrong by the same share: the arm holds at another duty, \
      but swings freely with the right period",
     confused_with: &[

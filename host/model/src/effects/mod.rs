@@ -49,6 +49,7 @@ mod time_offset;
 mod torque_offset;
 mod torque_saturation;
 mod torque_scale;
+mod unit_suffix;
 mod viscous;
 
 pub mod signature;
@@ -68,6 +69,7 @@ pub use state::{
     StepState,
 };
 pub use torque_scale::TorqueScale;
+pub use unit_suffix::split_unit;
 
 /// Every effect there is, in the order in which those of one site act.
 pub static EFFECTS: &[Effect] = &[

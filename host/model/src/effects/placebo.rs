@@ -21,15 +21,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "torque = coefficient_nm_s_rad * speed measured at another moment",
-    parameters: &[Parameter {
-        key: "coefficient_nm_s_rad",
-        unit: "N m s/rad",
-        meaning: "weight of the shuffled speed",
-        off: Some(0.0),
-        typical: (-0.1, 0.1),
-        bounds: (-10.0, 10.0),
-        starts: &[0.003, -0.003],
-    }],
+    parameters: &[
+        Parameter::of("coefficient_nm_s_rad", "weight of the shuffled speed")
+            .off(0.0)
+            .typical(-0.1, 0.1)
+            .bounds(-10.0, 10.0)
+            .starts(&[0.003, -0.003]),
+    ],
     looks_like: "nothing: it has no cause",
     confused_with: &[],
     experiment: "none",

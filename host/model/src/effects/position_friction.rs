@@ -24,33 +24,20 @@ static INFO: EffectInfo = EffectInfo {
     law: "friction = below_nm * min(-q / span_rad, 1) for q < 0, above_nm * min(q / span_rad, 1) \
      for q > 0",
     parameters: &[
-        Parameter {
-            key: "below_nm",
-            unit: "N m",
-            meaning: "what is added at -span_rad and beyond",
-            off: Some(0.0),
-            typical: (0.0, 0.06),
-            bounds: (-5.0, 5.0),
-            starts: &[0.02, 0.004],
-        },
-        Parameter {
-            key: "above_nm",
-            unit: "N m",
-            meaning: "what is added at +span_rad and beyond",
-            off: Some(0.0),
-            typical: (0.0, 0.06),
-            bounds: (-5.0, 5.0),
-            starts: &[0.01],
-        },
-        Parameter {
-            key: "span_rad",
-            unit: "rad",
-            meaning: "angle from which on it grows no more",
-            off: None,
-            typical: (0.3, 1.5),
-            bounds: (0.05, 6.3),
-            starts: &[0.6],
-        },
+        Parameter::of("below_nm", "what is added at -span_rad and beyond")
+            .off(0.0)
+            .typical(0.0, 0.06)
+            .bounds(-5.0, 5.0)
+            .starts(&[0.02, 0.004]),
+        Parameter::of("above_nm", "what is added at +span_rad and beyond")
+            .off(0.0)
+            .typical(0.0, 0.06)
+            .bounds(-5.0, 5.0)
+            .starts(&[0.01]),
+        Parameter::of("span_rad", "angle from which on it grows no more")
+            .typical(0.3, 1.5)
+            .bounds(0.05, 6.3)
+            .starts(&[0.6]),
     ],
     looks_like: "the loop over angle is wide at some angles and narrow at others, at every speed \
      and load",
@@ -70,33 +57,20 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction = below_n * min(-q / span_m, 1) for q < 0, above_n * min(q / span_m, 1) for \
      q > 0",
     parameters: &[
-        Parameter {
-            key: "below_n",
-            unit: "N",
-            meaning: "what is added at -span_m and beyond",
-            off: Some(0.0),
-            typical: (0.0, 5.0),
-            bounds: (-1000.0, 1000.0),
-            starts: &[0.3, 0.05],
-        },
-        Parameter {
-            key: "above_n",
-            unit: "N",
-            meaning: "what is added at +span_m and beyond",
-            off: Some(0.0),
-            typical: (0.0, 5.0),
-            bounds: (-1000.0, 1000.0),
-            starts: &[0.1],
-        },
-        Parameter {
-            key: "span_m",
-            unit: "m",
-            meaning: "displacement from which on it grows no more",
-            off: None,
-            typical: (0.05, 0.5),
-            bounds: (0.001, 10.0),
-            starts: &[0.2],
-        },
+        Parameter::of("below_n", "what is added at -span_m and beyond")
+            .off(0.0)
+            .typical(0.0, 5.0)
+            .bounds(-1000.0, 1000.0)
+            .starts(&[0.3, 0.05]),
+        Parameter::of("above_n", "what is added at +span_m and beyond")
+            .off(0.0)
+            .typical(0.0, 5.0)
+            .bounds(-1000.0, 1000.0)
+            .starts(&[0.1]),
+        Parameter::of("span_m", "displacement from which on it grows no more")
+            .typical(0.05, 0.5)
+            .bounds(0.001, 10.0)
+            .starts(&[0.2]),
     ],
     ..INFO
 };

@@ -31,24 +31,15 @@ static INFO: EffectInfo = EffectInfo {
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -stiffness_nm_rad * z, dz/dq = 1 - stiffness_nm_rad * z / torque_nm * sgn(dq)",
     parameters: &[
-        Parameter {
-            key: "torque_nm",
-            unit: "N m",
-            meaning: "friction once it slides",
-            off: Some(0.0),
-            typical: (0.005, 0.1),
-            bounds: (0.0, 5.0),
-            starts: &[0.02, 0.06],
-        },
-        Parameter {
-            key: "stiffness_nm_rad",
-            unit: "N m/rad",
-            meaning: "torque per angle before it slides",
-            off: None,
-            typical: (0.1, 5.0),
-            bounds: (0.01, 500.0),
-            starts: &[1.0, 0.3],
-        },
+        Parameter::of("torque_nm", "friction once it slides")
+            .off(0.0)
+            .typical(0.005, 0.1)
+            .bounds(0.0, 5.0)
+            .starts(&[0.02, 0.06]),
+        Parameter::of("stiffness_nm_rad", "torque per angle before it slides")
+            .typical(0.1, 5.0)
+            .bounds(0.01, 500.0)
+            .starts(&[1.0, 0.3]),
     ],
     looks_like: "small motions are sprung and come back; after each reversal friction builds up \
      over a fixed angle instead of at once",
@@ -68,24 +59,15 @@ static INFO: EffectInfo = EffectInfo {
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = -stiffness_n_m * z, dz/dq = 1 - stiffness_n_m * z / force_n * sgn(dq)",
     parameters: &[
-        Parameter {
-            key: "force_n",
-            unit: "N",
-            meaning: "friction once it slides",
-            off: Some(0.0),
-            typical: (0.05, 10.0),
-            bounds: (0.0, 1000.0),
-            starts: &[0.5, 5.0],
-        },
-        Parameter {
-            key: "stiffness_n_m",
-            unit: "N/m",
-            meaning: "force per displacement before it slides",
-            off: None,
-            typical: (10.0, 10000.0),
-            bounds: (0.1, 1e6),
-            starts: &[300.0, 3000.0],
-        },
+        Parameter::of("force_n", "friction once it slides")
+            .off(0.0)
+            .typical(0.05, 10.0)
+            .bounds(0.0, 1000.0)
+            .starts(&[0.5, 5.0]),
+        Parameter::of("stiffness_n_m", "force per displacement before it slides")
+            .typical(10.0, 10000.0)
+            .bounds(0.1, 1e6)
+            .starts(&[300.0, 3000.0]),
     ],
     ..INFO
 };

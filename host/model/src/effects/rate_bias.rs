@@ -21,15 +21,11 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "reading = d(q)/dt + bias_rad_s",
-    parameters: &[Parameter {
-        key: "bias_rad_s",
-        unit: "rad/s",
-        meaning: "reading at rest",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-5.0, 5.0),
-        starts: &[0.02, -0.02],
-    }],
+    parameters: &[Parameter::of("bias_rad_s", "reading at rest")
+        .off(0.0)
+        .typical(-0.05, 0.05)
+        .bounds(-5.0, 5.0)
+        .starts(&[0.02, -0.02])],
     looks_like: "a constant error of the rate, at rest, too; the angle that is integrated from it \
      drifts away",
     confused_with: &[
@@ -43,15 +39,11 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "reading = d(q)/dt + bias_m_s",
-    parameters: &[Parameter {
-        key: "bias_m_s",
-        unit: "m/s",
-        meaning: "reading at rest",
-        off: Some(0.0),
-        typical: (-0.02, 0.02),
-        bounds: (-5.0, 5.0),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of("bias_m_s", "reading at rest")
+        .off(0.0)
+        .typical(-0.02, 0.02)
+        .bounds(-5.0, 5.0)
+        .starts(&[0.01, -0.01])],
     ..INFO
 };
 

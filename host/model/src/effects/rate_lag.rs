@@ -24,15 +24,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::RateSensor,
     on_slide: OnSlide::Never,
     law: "time_constant_s * d(reading)/dt + reading = d(q)/dt",
-    parameters: &[Parameter {
-        key: "time_constant_s",
-        unit: "s",
-        meaning: "time constant of the filter",
-        off: Some(0.0),
-        typical: (0.002, 0.05),
-        bounds: (0.0, 1.0),
-        starts: &[0.01, 0.04],
-    }],
+    parameters: &[
+        Parameter::of("time_constant_s", "time constant of the filter")
+            .off(0.0)
+            .typical(0.002, 0.05)
+            .bounds(0.0, 1.0)
+            .starts(&[0.01, 0.04]),
+    ],
     looks_like: "the rate trails in proportion to the acceleration and rounds off fast motion; a \
      steady rate, and the angle of the same joint, are read rightly",
     confused_with: &[

@@ -22,15 +22,11 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::RateSensor,
     on_slide: OnSlide::Never,
     law: "reading = factor * d(q)/dt",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "rate read over true rate",
-        off: Some(1.0),
-        typical: (0.95, 1.05),
-        bounds: (0.5, 2.0),
-        starts: &[0.98, 1.02],
-    }],
+    parameters: &[Parameter::of("factor", "rate read over true rate")
+        .off(1.0)
+        .typical(0.95, 1.05)
+        .bounds(0.5, 2.0)
+        .starts(&[0.98, 1.02])],
     looks_like: "an error of the rate in proportion to the rate, none at rest; the angle of the \
      same joint is read rightly",
     confused_with: &[

@@ -24,15 +24,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "time_constant_s * d(reading)/dt + reading = q",
-    parameters: &[Parameter {
-        key: "time_constant_s",
-        unit: "s",
-        meaning: "time constant of the filter",
-        off: Some(0.0),
-        typical: (0.01, 0.1),
-        bounds: (0.0, 1.0),
-        starts: &[0.02, 0.08],
-    }],
+    parameters: &[
+        Parameter::of("time_constant_s", "time constant of the filter")
+            .off(0.0)
+            .typical(0.01, 0.1)
+            .bounds(0.0, 1.0)
+            .starts(&[0.02, 0.08]),
+    ],
     looks_like: "the reading trails in proportion to the speed and rounds off fast motion; a \
      resting arm is read rightly",
     confused_with: &[

@@ -22,15 +22,14 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "the input that is obeyed follows the one that arrives by at most rate_per_s a second",
-    parameters: &[Parameter {
-        key: "rate_per_s",
-        unit: "1/s",
-        meaning: "fastest change of the input: full duties a second, or goal in rad (m) a second",
-        off: Some(f64::INFINITY),
-        typical: (1.0, 20.0),
-        bounds: (0.01, 10000.0),
-        starts: &[5.0, 2.0, 15.0],
-    }],
+    parameters: &[Parameter::of(
+        "rate_per_s",
+        "fastest change of the input: full duties a second, or goal in rad (m) a second",
+    )
+    .off(f64::INFINITY)
+    .typical(1.0, 20.0)
+    .bounds(0.01, 10000.0)
+    .starts(&[5.0, 2.0, 15.0])],
     looks_like: "small changes of the input are obeyed at once, large steps arrive late and as a \
      ramp; the delay grows with the height of the step",
     confused_with: &[

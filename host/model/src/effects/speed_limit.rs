@@ -24,15 +24,14 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque - full_torque * w / no_load_speed_rad_s, while energised",
-    parameters: &[Parameter {
-        key: "no_load_speed_rad_s",
-        unit: "rad/s",
-        meaning: "speed at which full duty leaves no torque",
-        off: Some(f64::INFINITY),
-        typical: (4.0, 12.0),
-        bounds: (0.5, 10000.0),
-        starts: &[8.0, 20.0],
-    }],
+    parameters: &[Parameter::of(
+        "no_load_speed_rad_s",
+        "speed at which full duty leaves no torque",
+    )
+    .off(f64::INFINITY)
+    .typical(4.0, 12.0)
+    .bounds(0.5, 10000.0)
+    .starts(&[8.0, 20.0])],
     looks_like: "at full duty the arm accelerates less the faster it turns; the residual torque is \
      linear in speed, but only while the drive is energised",
     confused_with: &[
@@ -53,15 +52,14 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force - full force * w / no_load_speed_m_s, while energised",
-    parameters: &[Parameter {
-        key: "no_load_speed_m_s",
-        unit: "m/s",
-        meaning: "speed at which full duty leaves no force",
-        off: Some(f64::INFINITY),
-        typical: (0.1, 5.0),
-        bounds: (0.005, 10000.0),
-        starts: &[1.0, 4.0],
-    }],
+    parameters: &[Parameter::of(
+        "no_load_speed_m_s",
+        "speed at which full duty leaves no force",
+    )
+    .off(f64::INFINITY)
+    .typical(0.1, 5.0)
+    .bounds(0.005, 10000.0)
+    .starts(&[1.0, 4.0])],
     ..INFO
 };
 

@@ -28,24 +28,18 @@ static INFO: EffectInfo = EffectInfo {
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = excess_nm * exp(-|w| / speed_rad_s), against the motion",
     parameters: &[
-        Parameter {
-            key: "excess_nm",
-            unit: "N m",
-            meaning: "breakaway torque above the sliding friction",
-            off: Some(0.0),
-            typical: (0.005, 0.2),
-            bounds: (0.0, 10.0),
-            starts: &[0.02, 0.1],
-        },
-        Parameter {
-            key: "speed_rad_s",
-            unit: "rad/s",
-            meaning: "Stribeck speed, at which 37 % of the excess is left",
-            off: None,
-            typical: (0.05, 0.8),
-            bounds: (0.005, 10.0),
-            starts: &[0.15, 0.6],
-        },
+        Parameter::of("excess_nm", "breakaway torque above the sliding friction")
+            .off(0.0)
+            .typical(0.005, 0.2)
+            .bounds(0.0, 10.0)
+            .starts(&[0.02, 0.1]),
+        Parameter::of(
+            "speed_rad_s",
+            "Stribeck speed, at which 37 % of the excess is left",
+        )
+        .typical(0.05, 0.8)
+        .bounds(0.005, 10.0)
+        .starts(&[0.15, 0.6]),
     ],
     looks_like: "the arm sticks, then jumps; the residual torque is a spike at each reversal that \
      fades as the speed grows",
@@ -67,24 +61,18 @@ static INFO: EffectInfo = EffectInfo {
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction = excess_n * exp(-|w| / speed_m_s), against the motion",
     parameters: &[
-        Parameter {
-            key: "excess_n",
-            unit: "N",
-            meaning: "breakaway force above the sliding friction",
-            off: Some(0.0),
-            typical: (0.05, 10.0),
-            bounds: (0.0, 1000.0),
-            starts: &[0.5, 5.0],
-        },
-        Parameter {
-            key: "speed_m_s",
-            unit: "m/s",
-            meaning: "Stribeck speed, at which 37 % of the excess is left",
-            off: None,
-            typical: (0.005, 0.2),
-            bounds: (0.0005, 5.0),
-            starts: &[0.02, 0.1],
-        },
+        Parameter::of("excess_n", "breakaway force above the sliding friction")
+            .off(0.0)
+            .typical(0.05, 10.0)
+            .bounds(0.0, 1000.0)
+            .starts(&[0.5, 5.0]),
+        Parameter::of(
+            "speed_m_s",
+            "Stribeck speed, at which 37 % of the excess is left",
+        )
+        .typical(0.005, 0.2)
+        .bounds(0.0005, 5.0)
+        .starts(&[0.02, 0.1]),
     ],
     ..INFO
 };

@@ -22,15 +22,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "torque * (1 - drop_share * |u|)",
-    parameters: &[Parameter {
-        key: "drop_share",
-        unit: "1",
-        meaning: "share of the supply lost at full duty",
-        off: Some(0.0),
-        typical: (0.05, 0.35),
-        bounds: (0.0, 0.9),
-        starts: &[0.1, 0.25],
-    }],
+    parameters: &[
+        Parameter::of("drop_share", "share of the supply lost at full duty")
+            .off(0.0)
+            .typical(0.05, 0.35)
+            .bounds(0.0, 0.9)
+            .starts(&[0.1, 0.25]),
+    ],
     looks_like: "strong commands give less than their share of torque; the torque bends over duty, \
      alike in both directions",
     confused_with: &[

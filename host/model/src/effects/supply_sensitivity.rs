@@ -15,15 +15,14 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Supply,
     on_slide: OnSlide::Same,
     law: "torque * (1 + sensitivity * (V / V_nominal - 1))",
-    parameters: &[Parameter {
-        key: "sensitivity",
-        unit: "1",
-        meaning: "relative change of torque over relative change of supply",
-        off: Some(0.0),
-        typical: (0.5, 1.2),
-        bounds: (0.0, 3.0),
-        starts: &[1.0, 0.6],
-    }],
+    parameters: &[Parameter::of(
+        "sensitivity",
+        "relative change of torque over relative change of supply",
+    )
+    .off(0.0)
+    .typical(0.5, 1.2)
+    .bounds(0.0, 3.0)
+    .starts(&[1.0, 0.6])],
     looks_like: "the same command gives more motion on a full battery; the residual follows the \
      logged volts",
     confused_with: &[

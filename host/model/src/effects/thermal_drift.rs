@@ -27,24 +27,21 @@ static INFO: EffectInfo = EffectInfo {
     law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x = 0 where a log \
      begins",
     parameters: &[
-        Parameter {
-            key: "rise",
-            unit: "1",
-            meaning: "relative rise of the winding's resistance once warm from full duty",
-            off: Some(0.0),
-            typical: (0.5, 5.0),
-            bounds: (0.0, 300.0),
-            starts: &[3.0, 15.0],
-        },
-        Parameter {
-            key: "time_constant_s",
-            unit: "s",
-            meaning: "time in which the winding warms up by 63 %",
-            off: None,
-            typical: (5.0, 120.0),
-            bounds: (1.0, 3600.0),
-            starts: &[10.0, 40.0],
-        },
+        Parameter::of(
+            "rise",
+            "relative rise of the winding's resistance once warm from full duty",
+        )
+        .off(0.0)
+        .typical(0.5, 5.0)
+        .bounds(0.0, 300.0)
+        .starts(&[3.0, 15.0]),
+        Parameter::of(
+            "time_constant_s",
+            "time in which the winding warms up by 63 %",
+        )
+        .typical(5.0, 120.0)
+        .bounds(1.0, 3600.0)
+        .starts(&[10.0, 40.0]),
     ],
     looks_like: "the same command gives less torque the longer the log; cold again, it is as at \
      first",

@@ -30,15 +30,14 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "reading(t) = q(t - offset_s)",
-    parameters: &[Parameter {
-        key: "offset_s",
-        unit: "s",
-        meaning: "age of the reading at the time of its row; below 0 it is taken after that time",
-        off: Some(0.0),
-        typical: (-0.02, 0.02),
-        bounds: (-MOST_S, MOST_S),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of(
+        "offset_s",
+        "age of the reading at the time of its row; below 0 it is taken after that time",
+    )
+    .off(0.0)
+    .typical(-0.02, 0.02)
+    .bounds(-MOST_S, MOST_S)
+    .starts(&[0.01, -0.01])],
     looks_like: "an error in proportion to the speed, in a free swing too; the whole motion of the \
      joint is early or late against the inputs and the other joints, its shape unchanged",
     confused_with: &[

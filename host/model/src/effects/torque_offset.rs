@@ -22,15 +22,11 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = offset_nm, at every angle and speed, whether the drive is on or off",
-    parameters: &[Parameter {
-        key: "offset_nm",
-        unit: "N m",
-        meaning: "torque on the joint",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-5.0, 5.0),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of("offset_nm", "torque on the joint")
+        .off(0.0)
+        .typical(-0.05, 0.05)
+        .bounds(-5.0, 5.0)
+        .starts(&[0.01, -0.01])],
     looks_like: "the same error of torque everywhere: the joint rests beside where it should, and \
      goes one way more easily than the other",
     confused_with: &[
@@ -49,15 +45,11 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = offset_n, everywhere, whether the drive is on or off",
-    parameters: &[Parameter {
-        key: "offset_n",
-        unit: "N",
-        meaning: "force on the joint",
-        off: Some(0.0),
-        typical: (-5.0, 5.0),
-        bounds: (-1000.0, 1000.0),
-        starts: &[0.1, -0.1],
-    }],
+    parameters: &[Parameter::of("offset_n", "force on the joint")
+        .off(0.0)
+        .typical(-5.0, 5.0)
+        .bounds(-1000.0, 1000.0)
+        .starts(&[0.1, -0.1])],
     ..INFO
 };
 

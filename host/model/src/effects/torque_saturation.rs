@@ -21,15 +21,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque clipped to -limit_nm..limit_nm",
-    parameters: &[Parameter {
-        key: "limit_nm",
-        unit: "N m",
-        meaning: "largest torque in either direction",
-        off: Some(f64::INFINITY),
-        typical: (0.5, 2.0),
-        bounds: (0.001, 10000.0),
-        starts: &[0.3, 1.0, 3.0, 0.1, 0.03],
-    }],
+    parameters: &[
+        Parameter::of("limit_nm", "largest torque in either direction")
+            .off(f64::INFINITY)
+            .typical(0.5, 2.0)
+            .bounds(0.001, 10000.0)
+            .starts(&[0.3, 1.0, 3.0, 0.1, 0.03]),
+    ],
     looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is \
      zero below it",
     confused_with: &[
@@ -47,15 +45,13 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force clipped to -limit_n..limit_n",
-    parameters: &[Parameter {
-        key: "limit_n",
-        unit: "N",
-        meaning: "largest force in either direction",
-        off: Some(f64::INFINITY),
-        typical: (1.0, 100.0),
-        bounds: (0.001, 100000.0),
-        starts: &[3.0, 10.0, 30.0, 1.0, 0.3],
-    }],
+    parameters: &[
+        Parameter::of("limit_n", "largest force in either direction")
+            .off(f64::INFINITY)
+            .typical(1.0, 100.0)
+            .bounds(0.001, 100000.0)
+            .starts(&[3.0, 10.0, 30.0, 1.0, 0.3]),
+    ],
     ..INFO
 };
 

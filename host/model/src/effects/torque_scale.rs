@@ -24,15 +24,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
     law: "factor * torque",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "torque that arrives over torque in the model",
-        off: Some(1.0),
-        typical: (0.7, 1.3),
-        bounds: (0.05, 10.0),
-        starts: &[0.85, 1.15],
-    }],
+    parameters: &[
+        Parameter::of("factor", "torque that arrives over torque in the model")
+            .off(1.0)
+            .typical(0.7, 1.3)
+            .bounds(0.05, 10.0)
+            .starts(&[0.85, 1.15]),
+    ],
     looks_like: "every response to the drive is too strong or too weak by one share, at every \
      speed and in both directions",
     confused_with: &[

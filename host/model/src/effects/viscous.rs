@@ -24,15 +24,13 @@ static INFO: EffectInfo = EffectInfo {
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -coefficient_nm_s_rad * w",
-    parameters: &[Parameter {
-        key: "coefficient_nm_s_rad",
-        unit: "N m s/rad",
-        meaning: "resistance per speed",
-        off: Some(0.0),
-        typical: (0.001, 0.1),
-        bounds: (0.0, 10.0),
-        starts: &[0.01, 0.05],
-    }],
+    parameters: &[
+        Parameter::of("coefficient_nm_s_rad", "resistance per speed")
+            .off(0.0)
+            .typical(0.001, 0.1)
+            .bounds(0.0, 10.0)
+            .starts(&[0.01, 0.05]),
+    ],
     looks_like: "the residual torque is a straight line over speed; a free swing shrinks by the \
      same share every period",
     confused_with: &[
@@ -51,15 +49,11 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = -coefficient_n_s_m * w",
-    parameters: &[Parameter {
-        key: "coefficient_n_s_m",
-        unit: "N s/m",
-        meaning: "resistance per speed",
-        off: Some(0.0),
-        typical: (0.05, 20.0),
-        bounds: (0.0, 10000.0),
-        starts: &[0.5, 5.0],
-    }],
+    parameters: &[Parameter::of("coefficient_n_s_m", "resistance per speed")
+        .off(0.0)
+        .typical(0.05, 20.0)
+        .bounds(0.0, 10000.0)
+        .starts(&[0.5, 5.0])],
     ..INFO
 };
 

@@ -2,7 +2,6 @@
 //! `coulomb@1.torque_nm`.
 
 use super::field::{JointField, LinkField, POSITIVE};
-use super::suggest::split_unit;
 use super::{EffectInstance, Model};
 use crate::effects::{self, Axis, Effect};
 use std::fmt;
@@ -142,7 +141,7 @@ impl ParameterPath {
     pub fn unit(&self) -> &'static str {
         match self.parameter() {
             Some(parameter) => parameter.unit,
-            None => split_unit(self.key()).map_or("", |(_, unit)| unit),
+            None => effects::split_unit(self.key()).map_or("", |(_, unit)| unit),
         }
     }
 
