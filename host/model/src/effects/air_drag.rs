@@ -6,7 +6,7 @@ use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct AirDrag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "air_drag",
     title: "air drag",
     aliases: &[
@@ -61,10 +61,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for AirDrag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         -values[0] * at.speed_rad_s * at.speed_rad_s.abs()
     }

@@ -26,7 +26,7 @@ pub(super) const ROTOR_ON_SLIDE: Parameter = Parameter::of(
 .bounds(0.0, 100.0)
 .starts(&[0.05, 0.3]);
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "armature",
     title: "armature inertia",
     aliases: &[
@@ -70,12 +70,8 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for Armature {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn is_of_servo(&self) -> bool {
-        true
+    fn comes_with_servo(&self) -> Option<bool> {
+        Some(true)
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

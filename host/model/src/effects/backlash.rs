@@ -7,7 +7,7 @@ use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMem
 #[derive(Debug)]
 pub struct Backlash;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "backlash",
     title: "backlash before the encoder",
     aliases: &[
@@ -61,10 +61,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for Backlash {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn slipped(&self, [encoded_rad, reading_rad, draws_away_rad_s, _]: SenseMemory) -> [f64; 2] {
         [encoded_rad - reading_rad, draws_away_rad_s]
     }

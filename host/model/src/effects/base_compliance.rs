@@ -8,7 +8,7 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 #[derive(Debug)]
 pub struct BaseCompliance;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "base_compliance",
     title: "compliance of the base or bar",
     aliases: &[
@@ -96,10 +96,6 @@ impl BaseSpring {
 }
 
 impl Law for BaseCompliance {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
         rig.base_spring = BaseSpring::new(values[1], values[0], values[2]);
     }

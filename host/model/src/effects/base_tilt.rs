@@ -7,7 +7,7 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 #[derive(Debug)]
 pub struct BaseTilt;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "base_tilt",
     title: "base tilt",
     aliases: &[
@@ -43,10 +43,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for BaseTilt {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
         rig.gravity_turn_rad += if rig.turned { -values[0] } else { values[0] };
     }

@@ -6,7 +6,7 @@ use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Si
 #[derive(Debug)]
 pub struct BearingFriction;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "bearing_friction",
     title: "load friction of a plain bearing",
     aliases: &[
@@ -42,10 +42,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for BearingFriction {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.bearing_load_n
     }

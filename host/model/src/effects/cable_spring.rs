@@ -6,7 +6,7 @@ use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct CableSpring;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "cable_spring",
     title: "cable spring",
     aliases: &[
@@ -72,10 +72,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for CableSpring {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         let [stiffness_nm_rad, rest_rad] = values else {
             return 0.0;

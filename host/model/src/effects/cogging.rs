@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 #[derive(Debug)]
 pub struct Cogging;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "cogging",
     title: "cogging and gear ripple",
     aliases: &[
@@ -60,10 +60,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for Cogging {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         let [amplitude_nm, periods_per_turn, phase_rad] = values else {
             return 0.0;

@@ -6,7 +6,7 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 #[derive(Debug)]
 pub struct ComAngle;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "com_angle",
     title: "angle of the centre of mass",
     aliases: &[
@@ -51,10 +51,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for ComAngle {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
         rig.chain.links[joint].com_angle_rad += values[0];
     }

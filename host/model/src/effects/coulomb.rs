@@ -6,7 +6,7 @@ use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Si
 #[derive(Debug)]
 pub struct Coulomb;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "coulomb",
     title: "Coulomb friction",
     aliases: &[
@@ -60,10 +60,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for Coulomb {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn friction(&self, values: &[f64], _at: &FrictionState) -> f64 {
         values[0]
     }

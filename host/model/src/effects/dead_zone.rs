@@ -7,7 +7,7 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 #[derive(Debug)]
 pub struct DeadZone;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "dead_zone",
     title: "dead zone of the drive",
     aliases: &["deadband", "minimum duty", "minimum PWM", "insensitivity"],
@@ -52,10 +52,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for DeadZone {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         2e-2
     }

@@ -6,7 +6,7 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 #[derive(Debug)]
 pub struct Delay;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "delay",
     title: "transport delay",
     aliases: &[
@@ -43,10 +43,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for Delay {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0]
     }

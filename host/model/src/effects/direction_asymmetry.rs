@@ -6,7 +6,7 @@ use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Si
 #[derive(Debug)]
 pub struct DirectionAsymmetry;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "direction_asymmetry",
     title: "direction asymmetry of friction",
     aliases: &[
@@ -58,10 +58,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for DirectionAsymmetry {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.direction
     }

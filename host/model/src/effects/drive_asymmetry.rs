@@ -6,7 +6,7 @@ use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Si
 #[derive(Debug)]
 pub struct DriveAsymmetry;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "drive_asymmetry",
     title: "drive/backdrive asymmetry of the gear",
     aliases: &[
@@ -56,10 +56,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for DriveAsymmetry {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         (values[0] * at.motor_nm - values[1] * at.outside_nm).abs()
     }

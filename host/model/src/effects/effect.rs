@@ -15,9 +15,6 @@ pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
 /// slides. Every hook's default is identity; an effect overrides that of its site. `values` are in its
 /// parameters' order.
 pub trait Law: Sync + fmt::Debug {
-    /// What people and tools need to know of it at a joint that turns.
-    fn info(&self) -> &'static EffectInfo;
-
     /// Whether a model file defines it: see [`super::expression`].
     fn is_users(&self) -> bool {
         false
@@ -29,13 +26,9 @@ pub trait Law: Sync + fmt::Debug {
         SMOOTH_DIFFERENCE
     }
 
-    /// Whether it comes with the servo or its driver, so that joints of one servo type may share
-    /// it with the same values; else with the link, the bearing or the calibration of one joint.
-    fn is_of_servo(&self) -> bool {
-        matches!(
-            self.info().site,
-            Site::Timing | Site::Command | Site::Drive | Site::Gear | Site::Friction | Site::Sensor
-        )
+    /// Whether it comes with the servo; `None` where its site tells. See [`Effect::is_of_servo`].
+    fn comes_with_servo(&self) -> Option<bool> {
+        None
     }
 
     /// The value of the model that it changes where that is all it does: measured on the rig, such
@@ -172,29 +165,44 @@ pub trait Law: Sync + fmt::Debug {
     }
 }
 
-/// A departure from the rigid chain with ideal drives and sensors: a law, and how the joints move
-/// whose units its values have.
-#[derive(Debug, Clone, Copy)]
+/// A departure from the rigid chain with ideal drives and sensors: a law, what there is to say of
+/// it, and how the joints move whose units its values have.
+#[derive(Clone, Copy)]
 pub struct Effect {
     law: &'static dyn Law,
+    info: &'static EffectInfo,
     axis: Axis,
 }
 
 impl Effect {
     /// The effect of a law at joints that turn.
-    pub const fn of(law: &'static dyn Law) -> Effect {
+    pub(super) const fn of(law: &'static dyn Law, info: &'static EffectInfo) -> Effect {
         Effect {
             law,
+            info,
             axis: Axis::Hinge,
         }
     }
 
     /// What people and tools need to know of it at a joint of its axis.
     pub fn info(self) -> &'static EffectInfo {
-        match (self.axis, self.law.info().on_slide) {
+        match (self.axis, self.info.on_slide) {
             (Axis::Slide, OnSlide::Own(info)) => info,
-            _ => self.law.info(),
+            _ => self.info,
         }
+    }
+
+    /// Whether it comes with the servo or its driver, so that joints of one servo type may share
+    /// it with the same values; else with the link, the bearing or the calibration of one joint.
+    pub fn is_of_servo(self) -> bool {
+        use Site::{Command, Drive, Friction, Gear, Sensor, Timing};
+        let by_site = || {
+            matches!(
+                self.info.site,
+                Timing | Command | Drive | Gear | Friction | Sensor
+            )
+        };
+        self.law.comes_with_servo().unwrap_or_else(by_site)
     }
 
     /// The joints whose units its values have.
@@ -204,7 +212,7 @@ impl Effect {
 
     /// It at a joint of this kind; none where it cannot act.
     pub fn on(self, axis: Axis) -> Option<Effect> {
-        let acts = axis == Axis::Hinge || !matches!(self.info().on_slide, OnSlide::Never);
+        let acts = axis == Axis::Hinge || !matches!(self.info.on_slide, OnSlide::Never);
         acts.then_some(Effect { axis, ..self })
     }
 }
@@ -219,6 +227,12 @@ impl ops::Deref for Effect {
 
 impl PartialEq for Effect {
     fn eq(&self, other: &Effect) -> bool {
-        self.info().id == other.info().id
+        self.info.id == other.info.id
+    }
+}
+
+impl fmt::Debug for Effect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({:?})", self.info.id, self.axis)
     }
 }

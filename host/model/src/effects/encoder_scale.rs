@@ -6,7 +6,7 @@ use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slo
 #[derive(Debug)]
 pub struct EncoderScale;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "encoder_scale",
     title: "encoder scale",
     aliases: &[
@@ -43,10 +43,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for EncoderScale {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
         values[0] * angle_rad
     }

@@ -6,7 +6,7 @@ use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slo
 #[derive(Debug)]
 pub struct EncoderZero;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "encoder_zero",
     title: "encoder zero",
     aliases: &[
@@ -57,10 +57,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for EncoderZero {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
         angle_rad + values[0]
     }

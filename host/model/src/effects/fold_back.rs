@@ -11,7 +11,7 @@ use super::{
 #[derive(Debug)]
 pub struct FoldBack;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "fold_back",
     title: "protective fold-back of the torque",
     aliases: &[
@@ -52,10 +52,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for FoldBack {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         2e-2
     }

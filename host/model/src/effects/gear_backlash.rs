@@ -7,7 +7,7 @@ use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
 #[derive(Debug)]
 pub struct GearBacklash;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "gear_backlash",
     title: "backlash of the gear",
     aliases: &[
@@ -63,10 +63,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for GearBacklash {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         5e-2
     }

@@ -17,7 +17,7 @@ const DAMPING: Parameter = Parameter::of(
 .bounds(0.0, 0.7)
 .starts(&[0.15]);
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "gear_compliance",
     title: "compliance of the gear",
     aliases: &[
@@ -89,10 +89,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for GearCompliance {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         2e-3
     }

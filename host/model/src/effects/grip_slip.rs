@@ -8,7 +8,7 @@ use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMem
 #[derive(Debug)]
 pub struct GripSlip;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "grip_slip",
     title: "slip of the grip or of the encoder's shaft",
     aliases: &["slip", "slippage", "coupling slip", "shaft slip", "grip"],
@@ -55,10 +55,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for GripSlip {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         5e-3
     }

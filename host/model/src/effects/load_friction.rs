@@ -6,7 +6,7 @@ use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Si
 #[derive(Debug)]
 pub struct LoadFriction;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "load_friction",
     title: "load-dependent friction of the gear",
     aliases: &[
@@ -47,10 +47,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for LoadFriction {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.gear_load_nm
     }

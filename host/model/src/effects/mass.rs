@@ -12,7 +12,7 @@ pub struct Mass;
 /// Smallest share of the mass that is left; a chain without inertia cannot be solved.
 const LEAST_SHARE: f64 = 0.01;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "mass",
     title: "mass or payload",
     aliases: &[
@@ -52,10 +52,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for Mass {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn value_behind(&self) -> Option<ValueBehind> {
         Some(ValueBehind::LinkMass)
     }

@@ -1,6 +1,6 @@
 //! The library of physical effects: each states its law once, and describes itself for people.
 //!
-//! Adding one is a file with an `info()` and the hook of its site, and a line in [`EFFECTS`], which
+//! Adding one is a file with an `INFO` and the hook of its site, and a line in [`EFFECTS`], which
 //! simulator, effect pages, candidates, the fit's bounds and the law tests iterate.
 
 mod air_drag;
@@ -63,66 +63,78 @@ pub use gear::{Coupling, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, OnSlide, Parameter, Scope, Site, ValueBehind};
 pub use look_up::{NameMatch, listed, look_up};
 pub use placebo::PLACEBO;
-pub use probe::{Probe, ProbeVariable};
+pub use probe::ProbeVariable;
 pub use state::{
     AtRest, DriveState, Encoded, FrictionState, JointState, MemoryCell, Rig, SenseMemory, Slope,
     StepState,
 };
-pub use torque_scale::TorqueScale;
+pub use torque_scale::TORQUE_SCALE;
 pub use unit_suffix::split_unit;
 
 /// Every effect there is, in the order in which those of one site act.
 pub static EFFECTS: &[Effect] = &[
-    Effect::of(&delay::Delay),
-    Effect::of(&slew_limit::SlewLimit),
-    Effect::of(&dead_zone::DeadZone),
-    Effect::of(&supply_sensitivity::SupplySensitivity),
-    Effect::of(&supply_sag::SupplySag),
-    Effect::of(&torque_scale::TorqueScale),
-    Effect::of(&speed_limit::SpeedLimit),
-    Effect::of(&torque_saturation::TorqueSaturation),
-    Effect::of(&thermal_drift::ThermalDrift),
-    Effect::of(&fold_back::FoldBack),
-    Effect::of(&gear_compliance::GearCompliance),
-    Effect::of(&gear_backlash::GearBacklash),
-    Effect::of(&coulomb::Coulomb),
-    Effect::of(&stribeck::Stribeck),
-    Effect::of(&load_friction::LoadFriction),
-    Effect::of(&drive_asymmetry::DriveAsymmetry),
-    Effect::of(&bearing_friction::BearingFriction),
-    Effect::of(&direction_asymmetry::DirectionAsymmetry),
-    Effect::of(&position_friction::PositionFriction),
-    Effect::of(&viscous::Viscous),
-    Effect::of(&air_drag::AirDrag),
-    Effect::of(&cable_spring::CableSpring),
-    Effect::of(&cogging::Cogging),
-    Effect::of(&torque_offset::TorqueOffset),
-    Effect::of(&pre_sliding::PreSliding),
-    Effect::of(&com_angle::ComAngle),
-    Effect::of(&mass::Mass),
-    Effect::of(&armature::Armature),
-    Effect::of(&base_tilt::BaseTilt),
-    Effect::of(&base_compliance::BaseCompliance),
-    Effect::of(&encoder_scale::EncoderScale),
-    Effect::of(&encoder_zero::EncoderZero),
-    Effect::of(&grip_slip::GripSlip),
-    Effect::of(&backlash::Backlash),
-    Effect::of(&sensor_lag::SensorLag),
-    Effect::of(&time_offset::TimeOffset),
-    Effect::of(&rate_scale::RateScale),
-    Effect::of(&rate_bias::RateBias),
-    Effect::of(&rate_lag::RateLag),
+    Effect::of(&delay::Delay, &delay::INFO),
+    Effect::of(&slew_limit::SlewLimit, &slew_limit::INFO),
+    Effect::of(&dead_zone::DeadZone, &dead_zone::INFO),
+    Effect::of(
+        &supply_sensitivity::SupplySensitivity,
+        &supply_sensitivity::INFO,
+    ),
+    Effect::of(&supply_sag::SupplySag, &supply_sag::INFO),
+    TORQUE_SCALE,
+    Effect::of(&speed_limit::SpeedLimit, &speed_limit::INFO),
+    Effect::of(
+        &torque_saturation::TorqueSaturation,
+        &torque_saturation::INFO,
+    ),
+    Effect::of(&thermal_drift::ThermalDrift, &thermal_drift::INFO),
+    Effect::of(&fold_back::FoldBack, &fold_back::INFO),
+    Effect::of(&gear_compliance::GearCompliance, &gear_compliance::INFO),
+    Effect::of(&gear_backlash::GearBacklash, &gear_backlash::INFO),
+    Effect::of(&coulomb::Coulomb, &coulomb::INFO),
+    Effect::of(&stribeck::Stribeck, &stribeck::INFO),
+    Effect::of(&load_friction::LoadFriction, &load_friction::INFO),
+    Effect::of(&drive_asymmetry::DriveAsymmetry, &drive_asymmetry::INFO),
+    Effect::of(&bearing_friction::BearingFriction, &bearing_friction::INFO),
+    Effect::of(
+        &direction_asymmetry::DirectionAsymmetry,
+        &direction_asymmetry::INFO,
+    ),
+    Effect::of(
+        &position_friction::PositionFriction,
+        &position_friction::INFO,
+    ),
+    Effect::of(&viscous::Viscous, &viscous::INFO),
+    Effect::of(&air_drag::AirDrag, &air_drag::INFO),
+    Effect::of(&cable_spring::CableSpring, &cable_spring::INFO),
+    Effect::of(&cogging::Cogging, &cogging::INFO),
+    Effect::of(&torque_offset::TorqueOffset, &torque_offset::INFO),
+    Effect::of(&pre_sliding::PreSliding, &pre_sliding::INFO),
+    Effect::of(&com_angle::ComAngle, &com_angle::INFO),
+    Effect::of(&mass::Mass, &mass::INFO),
+    Effect::of(&armature::Armature, &armature::INFO),
+    Effect::of(&base_tilt::BaseTilt, &base_tilt::INFO),
+    Effect::of(&base_compliance::BaseCompliance, &base_compliance::INFO),
+    Effect::of(&encoder_scale::EncoderScale, &encoder_scale::INFO),
+    Effect::of(&encoder_zero::EncoderZero, &encoder_zero::INFO),
+    Effect::of(&grip_slip::GripSlip, &grip_slip::INFO),
+    Effect::of(&backlash::Backlash, &backlash::INFO),
+    Effect::of(&sensor_lag::SensorLag, &sensor_lag::INFO),
+    Effect::of(&time_offset::TimeOffset, &time_offset::INFO),
+    Effect::of(&rate_scale::RateScale, &rate_scale::INFO),
+    Effect::of(&rate_bias::RateBias, &rate_bias::INFO),
+    Effect::of(&rate_lag::RateLag, &rate_lag::INFO),
 ];
 
 /// Not physics: what diagnosis runs along to learn what chance gains.
 pub static CONTROLS: &[Effect] = &[
-    Effect::of(&placebo::Placebo),
-    Effect::of(&probe::TIMING_PROBE),
-    Effect::of(&probe::DRIVE_PROBE),
-    Effect::of(&probe::JOINT_PROBE),
-    Effect::of(&probe::BODY_PROBE),
-    Effect::of(&probe::ENCODER_PROBE),
-    Effect::of(&probe::SENSOR_PROBE),
+    Effect::of(&placebo::Placebo, &placebo::INFO),
+    probe::TIMING_PROBE,
+    probe::DRIVE_PROBE,
+    probe::JOINT_PROBE,
+    probe::BODY_PROBE,
+    probe::ENCODER_PROBE,
+    probe::SENSOR_PROBE,
 ];
 
 /// The effect (or control) of this id, or what a model file last defined by this name.

@@ -12,7 +12,7 @@ pub struct Placebo;
 /// Id of the placebo regressor.
 pub const PLACEBO: &str = "placebo";
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: PLACEBO,
     title: "placebo (shuffled speed)",
     aliases: &[],
@@ -36,10 +36,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for Placebo {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         values[0] * at.shuffled_rad_s
     }

@@ -7,7 +7,7 @@ use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Si
 #[derive(Debug)]
 pub struct PositionFriction;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "position_friction",
     title: "friction that changes with the angle",
     aliases: &[
@@ -76,10 +76,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for PositionFriction {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         5e-3
     }

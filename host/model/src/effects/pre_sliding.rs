@@ -11,7 +11,7 @@ use super::{
 #[derive(Debug)]
 pub struct PreSliding;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "pre_sliding",
     title: "pre-sliding friction",
     aliases: &[
@@ -76,10 +76,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 const SLIDES_AT: f64 = 0.05;
 
 impl Law for PreSliding {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         5e-3
     }

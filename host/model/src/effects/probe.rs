@@ -96,33 +96,33 @@ impl ProbeVariable {
 
     /// The probe whose hook serves this variable.
     pub fn probe(self) -> Effect {
-        Effect::of(match self {
-            ProbeVariable::Supply | ProbeVariable::BackEmf => &DRIVE_PROBE,
-            ProbeVariable::Delay => &TIMING_PROBE,
-            ProbeVariable::Inertia | ProbeVariable::Mass | ProbeVariable::Tilt => &BODY_PROBE,
-            ProbeVariable::Reading => &ENCODER_PROBE,
-            ProbeVariable::ReadingLag | ProbeVariable::ReadingBacklash => &SENSOR_PROBE,
-            _ => &JOINT_PROBE,
-        })
+        match self {
+            ProbeVariable::Supply | ProbeVariable::BackEmf => DRIVE_PROBE,
+            ProbeVariable::Delay => TIMING_PROBE,
+            ProbeVariable::Inertia | ProbeVariable::Mass | ProbeVariable::Tilt => BODY_PROBE,
+            ProbeVariable::Reading => ENCODER_PROBE,
+            ProbeVariable::ReadingLag | ProbeVariable::ReadingBacklash => SENSOR_PROBE,
+            _ => JOINT_PROBE,
+        }
     }
 }
 
 /// A free-form term at one site; values are amplitude, variable, centre, width.
 #[derive(Debug)]
-pub struct Probe {
-    info: &'static EffectInfo,
-}
+struct Probe;
 
-pub(super) static TIMING_PROBE: Probe = probe(&const { info("timing_probe", Site::Timing) });
-pub(super) static DRIVE_PROBE: Probe = probe(&const { info("drive_probe", Site::Drive) });
-pub(super) static JOINT_PROBE: Probe = probe(&const { info("joint_probe", Site::Joint) });
-pub(super) static BODY_PROBE: Probe = probe(&const { info("body_probe", Site::Body) });
-pub(super) static ENCODER_PROBE: Probe = probe(&const { info("encoder_probe", Site::Encoder) });
-pub(super) static SENSOR_PROBE: Probe = probe(&const { info("sensor_probe", Site::Sensor) });
-
-const fn probe(info: &'static EffectInfo) -> Probe {
-    Probe { info }
-}
+pub(super) static TIMING_PROBE: Effect =
+    Effect::of(&Probe, &const { info("timing_probe", Site::Timing) });
+pub(super) static DRIVE_PROBE: Effect =
+    Effect::of(&Probe, &const { info("drive_probe", Site::Drive) });
+pub(super) static JOINT_PROBE: Effect =
+    Effect::of(&Probe, &const { info("joint_probe", Site::Joint) });
+pub(super) static BODY_PROBE: Effect =
+    Effect::of(&Probe, &const { info("body_probe", Site::Body) });
+pub(super) static ENCODER_PROBE: Effect =
+    Effect::of(&Probe, &const { info("encoder_probe", Site::Encoder) });
+pub(super) static SENSOR_PROBE: Effect =
+    Effect::of(&Probe, &const { info("sensor_probe", Site::Sensor) });
 
 const fn info(id: &'static str, site: Site) -> EffectInfo {
     EffectInfo {
@@ -171,10 +171,6 @@ fn bump(x: f64, values: &[f64]) -> f64 {
 }
 
 impl Law for Probe {
-    fn info(&self) -> &'static EffectInfo {
-        self.info
-    }
-
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0].max(0.0)
     }

@@ -6,7 +6,7 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 #[derive(Debug)]
 pub struct RateBias;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "rate_bias",
     title: "bias of the rate sensor",
     aliases: &[
@@ -48,10 +48,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for RateBias {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn rate_bias_rad_s(&self, values: &[f64]) -> f64 {
         values[0]
     }

@@ -7,7 +7,7 @@ use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMem
 #[derive(Debug)]
 pub struct RateLag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "rate_lag",
     title: "lag of the rate sensor",
     aliases: &[
@@ -42,10 +42,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for RateLag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
     }

@@ -6,7 +6,7 @@ use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 #[derive(Debug)]
 pub struct RateScale;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "rate_scale",
     title: "scale of the rate sensor",
     aliases: &[
@@ -38,10 +38,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for RateScale {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn rate_scale(&self, values: &[f64]) -> f64 {
         values[0]
     }

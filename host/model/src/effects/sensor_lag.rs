@@ -7,7 +7,7 @@ use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMem
 #[derive(Debug)]
 pub struct SensorLag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "sensor_lag",
     title: "lag of the sensor",
     aliases: &[
@@ -48,10 +48,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for SensorLag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
     }

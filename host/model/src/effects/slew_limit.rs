@@ -7,7 +7,7 @@ use super::{AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct SlewLimit;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "slew_limit",
     title: "slew limit of the drive",
     aliases: &[
@@ -43,10 +43,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for SlewLimit {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn remembers(&self) -> bool {
         true
     }

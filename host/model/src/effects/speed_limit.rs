@@ -6,7 +6,7 @@ use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct SpeedLimit;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "speed_limit",
     title: "speed limit by back-EMF",
     aliases: &[
@@ -64,10 +64,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for SpeedLimit {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm - at.full_torque_nm * at.speed_rad_s / values[0]
     }

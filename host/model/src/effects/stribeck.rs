@@ -9,7 +9,7 @@ use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Si
 #[derive(Debug)]
 pub struct Stribeck;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "stribeck",
     title: "stiction and Stribeck friction",
     aliases: &[
@@ -78,10 +78,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for Stribeck {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn difference(&self) -> f64 {
         5e-3
     }

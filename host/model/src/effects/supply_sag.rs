@@ -6,7 +6,7 @@ use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct SupplySag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "supply_sag",
     title: "supply sag",
     aliases: &[
@@ -47,10 +47,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for SupplySag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm * (1.0 - values[0] * at.duty.abs())
     }

@@ -6,7 +6,7 @@ use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct SupplySensitivity;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "supply_sensitivity",
     title: "torque depends on the supply",
     aliases: &["supply voltage", "battery voltage", "voltage dependence"],
@@ -36,10 +36,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for SupplySensitivity {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm * (1.0 + values[0] * (at.supply_ratio - 1.0))
     }

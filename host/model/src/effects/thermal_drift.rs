@@ -9,7 +9,7 @@ use super::{
 #[derive(Debug)]
 pub struct ThermalDrift;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "thermal_drift",
     title: "thermal drift of the motor",
     aliases: &[
@@ -56,10 +56,6 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for ThermalDrift {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn remembers(&self) -> bool {
         true
     }

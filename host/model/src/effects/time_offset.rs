@@ -10,7 +10,7 @@ pub struct TimeOffset;
 /// Largest offset, s, of either sign.
 const MOST_S: f64 = 0.1;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "time_offset",
     title: "time offset of the reading",
     aliases: &[
@@ -53,14 +53,10 @@ static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for TimeOffset {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     /// The columns of one log need not be off by the same time, and a log whose readings are all
     /// late by the same time is one whose inputs act late: a `delay`.
-    fn is_of_servo(&self) -> bool {
-        false
+    fn comes_with_servo(&self) -> Option<bool> {
+        Some(false)
     }
 
     fn reading_offset_s(&self, values: &[f64]) -> Option<f64> {

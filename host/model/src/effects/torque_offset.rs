@@ -6,7 +6,7 @@ use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct TorqueOffset;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "torque_offset",
     title: "constant torque offset",
     aliases: &[
@@ -54,10 +54,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for TorqueOffset {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn torque(&self, values: &[f64], _at: &JointState) -> f64 {
         values[0]
     }

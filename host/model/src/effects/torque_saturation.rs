@@ -6,7 +6,7 @@ use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct TorqueSaturation;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "torque_saturation",
     title: "torque saturation",
     aliases: &[
@@ -56,10 +56,6 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for TorqueSaturation {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
         torque_nm.clamp(-values[0], values[0])
     }

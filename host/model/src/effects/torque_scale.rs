@@ -1,12 +1,13 @@
 //! Torque scale: the torque constant or the gear ratio differs from the data sheet.
 
 use super::{
-    AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope, ValueBehind,
+    AtRest, DriveState, Effect, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope,
+    ValueBehind,
 };
 
 /// s tau.
 #[derive(Debug)]
-pub struct TorqueScale;
+struct TorqueScale;
 
 static INFO: EffectInfo = EffectInfo {
     id: "torque_scale",
@@ -47,11 +48,10 @@ static INFO: EffectInfo = EffectInfo {
      (2009), chapter 5",
 };
 
-impl Law for TorqueScale {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
+/// The effect, by which readings of a drive's torque are tried.
+pub static TORQUE_SCALE: Effect = Effect::of(&TorqueScale, &INFO);
 
+impl Law for TorqueScale {
     fn value_behind(&self) -> Option<ValueBehind> {
         Some(ValueBehind::StallTorque)
     }

@@ -6,7 +6,7 @@ use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scop
 #[derive(Debug)]
 pub struct Viscous;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "viscous",
     title: "viscous friction",
     aliases: &[
@@ -58,12 +58,8 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for Viscous {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn is_of_servo(&self) -> bool {
-        true
+    fn comes_with_servo(&self) -> Option<bool> {
+        Some(true)
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

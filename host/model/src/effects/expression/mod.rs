@@ -57,7 +57,7 @@ pub enum DefinitionFault {
     Torque(Misplaced),
 }
 
-type ExpressionLaws = Vec<(LawDefinition, &'static ExpressionLaw)>;
+type ExpressionLaws = Vec<(LawDefinition, Effect)>;
 
 static LAWS: LazyLock<RwLock<ExpressionLaws>> = LazyLock::new(RwLock::default);
 
@@ -72,32 +72,31 @@ pub fn effect(definition: &LawDefinition) -> Result<Effect, DefinitionFault> {
         let known = laws.remove(index);
         let effect = known.1;
         laws.push(known);
-        return Ok(Effect::of(effect));
+        return Ok(effect);
     }
     if laws.len() >= MOST_LAWS {
         let reason = ExpressionReason::TooManyLaws { most: MOST_LAWS };
         return Err(DefinitionFault::Name(reason));
     }
-    let law: &'static ExpressionLaw = Box::leak(Box::new(compiled(definition)?));
-    laws.push((definition.clone(), law));
-    Ok(Effect::of(law))
+    let effect = compiled(definition)?;
+    laws.push((definition.clone(), effect));
+    Ok(effect)
 }
 
 /// The effect that was last defined by this name.
 pub(super) fn named(id: &str) -> Option<Effect> {
     let laws = LAWS.read().unwrap_or_else(|broken| broken.into_inner());
-    let found = laws.iter().rev().find(|(_, law)| law.info.id == id)?;
-    Some(Effect::of(found.1))
+    let mut effects = laws.iter().rev().map(|(_, effect)| *effect);
+    effects.find(|effect| effect.info().id == id)
 }
 
 /// The effects of all definitions so far.
 pub(crate) fn defined() -> Vec<Effect> {
     let laws = LAWS.read().unwrap_or_else(|broken| broken.into_inner());
-    let effects = laws.iter().rev().map(|(_, law)| Effect::of(*law));
-    effects.collect()
+    laws.iter().rev().map(|(_, effect)| *effect).collect()
 }
 
-fn compiled(definition: &LawDefinition) -> Result<ExpressionLaw, DefinitionFault> {
+fn compiled(definition: &LawDefinition) -> Result<Effect, DefinitionFault> {
     names(definition)?;
     let keys: Vec<&str> = definition
         .parameters
@@ -108,10 +107,8 @@ fn compiled(definition: &LawDefinition) -> Result<ExpressionLaw, DefinitionFault
     let off: Vec<Option<f64>> = (0..keys.len())
         .map(|i| off(&program, definition, i))
         .collect();
-    Ok(ExpressionLaw {
-        info: info(definition, &off),
-        program,
-    })
+    let law = Box::leak(Box::new(ExpressionLaw { program }));
+    Ok(Effect::of(law, info(definition, &off)))
 }
 
 /// Judges names, bounds and starts.
