@@ -3,7 +3,7 @@
 
 use super::signatures::{chart, title};
 use crate::effects::signature::signature;
-use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use crate::effects::{EFFECTS, Effect, EffectInfo, Needs, OnSlide, Parameter, Scope, Site};
 use crate::output::number::given;
 use crate::output::table::{plain_table, unbroken};
 use comfy_table::Table;
@@ -20,7 +20,7 @@ pub fn overview() -> String {
 }
 
 /// Everything there is to say of one effect, as plain text.
-pub fn page(effect: &dyn Effect) -> String {
+pub fn page(effect: Effect) -> String {
     let info = effect.info();
     let sections = [
         heading(info),
@@ -41,12 +41,11 @@ pub fn page(effect: &dyn Effect) -> String {
 }
 
 /// Law and parameters there, in m and N.
-fn on_slide(effect: &dyn Effect) -> String {
-    match effect.slide_info() {
-        None if effect.info().scope == Scope::WholeRig => "The same.".to_string(),
-        None => "It does not act there.".to_string(),
-        Some(info) if std::ptr::eq(info, effect.info()) => "The same.".to_string(),
-        Some(info) => format!("{}\n{}", wrapped(info.law), parameters(info)),
+fn on_slide(effect: Effect) -> String {
+    match effect.info().on_slide {
+        OnSlide::Never => "It does not act there.".to_string(),
+        OnSlide::Same => "The same.".to_string(),
+        OnSlide::Own(info) => format!("{}\n{}", wrapped(info.law), parameters(info)),
     }
 }
 
@@ -138,7 +137,7 @@ fn confusions(info: &EffectInfo) -> String {
 }
 
 /// The signature with its axes, and what it is drawn for.
-fn drawn(effect: &dyn Effect) -> String {
+fn drawn(effect: Effect) -> String {
     let signature = signature(effect);
     let chart = chart(effect, &signature);
     let mut values = effect.info().parameters.iter().zip(&signature.values);

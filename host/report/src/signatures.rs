@@ -4,7 +4,7 @@ use super::page::Section;
 use super::{AFTER, Report};
 use crate::diagnose::FittedEffect;
 use crate::effects::signature::{Signature, signature};
-use crate::effects::{Axis, Effect, named, on_axis};
+use crate::effects::{Axis, Effect, named};
 use crate::output::number::given;
 use crate::plot::{Chart, Curve, Tone};
 use maud::{Markup, html};
@@ -24,8 +24,8 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 /// Each kind once, however many joints have it.
-fn kinds(effects: &[FittedEffect]) -> Vec<&'static dyn Effect> {
-    let mut kinds: Vec<&'static dyn Effect> = Vec::new();
+fn kinds(effects: &[FittedEffect]) -> Vec<Effect> {
+    let mut kinds: Vec<Effect> = Vec::new();
     for effect in effects.iter().filter_map(as_found) {
         if !kinds
             .iter()
@@ -38,23 +38,23 @@ fn kinds(effects: &[FittedEffect]) -> Vec<&'static dyn Effect> {
 }
 
 /// The effect in the units of the joint at which it was found.
-fn as_found(effect: &FittedEffect) -> Option<&'static dyn Effect> {
+fn as_found(effect: &FittedEffect) -> Option<Effect> {
     let hinge = named(&effect.kind)?;
-    let has = |of: &dyn Effect| {
+    let has = |of: Effect| {
         let keys = of.info().parameters.iter().map(|parameter| parameter.key);
         keys.eq(effect.parameters.iter().map(|value| value.key.as_str()))
     };
     if has(hinge) {
         Some(hinge)
     } else {
-        on_axis(hinge, Axis::Slide)
+        hinge.on(Axis::Slide)
     }
 }
 
-fn explained(effect: &'static dyn Effect) -> Markup {
+fn explained(effect: Effect) -> Markup {
     let info = effect.info();
     // The shape is that on a bench arm, whatever the joint.
-    let hinge = on_axis(effect, Axis::Hinge);
+    let hinge = effect.on(Axis::Hinge);
     let drawn = hinge.map(|hinge| chart(hinge, &signature(hinge)));
     html! {
         div.effect {
@@ -86,7 +86,7 @@ pub(super) fn title(id: &'static str) -> &'static str {
 }
 
 /// The curve without the effect, and with the values it is drawn for.
-pub fn chart(effect: &dyn Effect, signature: &Signature) -> Chart {
+pub fn chart(effect: Effect, signature: &Signature) -> Chart {
     let parameters = effect.info().parameters.iter().zip(&signature.values);
     let values =
         parameters.map(|(parameter, value)| format!("{} = {}", parameter.key, given(*value)));

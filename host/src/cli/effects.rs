@@ -59,7 +59,7 @@ pub fn run(args: &EffectsArgs, console: &Console) -> Result<ExitStatus> {
 }
 
 /// Lists the effects that a word may mean.
-fn choice(effects: &[&'static dyn Effect], why: &str, console: &Console) -> Result<()> {
+fn choice(effects: &[Effect], why: &str, console: &Console) -> Result<()> {
     infos(effects, console, || listed(effects).join("\n"))?;
     if !console.json {
         console.say(&format!(
@@ -70,11 +70,7 @@ fn choice(effects: &[&'static dyn Effect], why: &str, console: &Console) -> Resu
 }
 
 /// Descriptions for programs, or a text for people.
-fn infos(
-    effects: &[&'static dyn Effect],
-    console: &Console,
-    text: impl FnOnce() -> String,
-) -> Result<()> {
+fn infos(effects: &[Effect], console: &Console, text: impl FnOnce() -> String) -> Result<()> {
     let infos: Vec<_> = effects.iter().map(|effect| effect.info()).collect();
     console.result(&infos, text)
 }

@@ -142,7 +142,7 @@ impl Verification {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UndesignedEffect {
     /// Which one.
-    pub effect: &'static dyn Effect,
+    pub effect: Effect,
     /// Its joint, counted from 0; none for the whole rig.
     pub joint: Option<usize>,
 }

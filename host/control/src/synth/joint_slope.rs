@@ -76,7 +76,7 @@ impl<'a> JointAt<'a> {
         site: Site,
         at: AtRest,
         omitted: &mut Vec<OmittedEffect>,
-    ) -> Vec<(&'static dyn Effect, &'a [f64], Slope)> {
+    ) -> Vec<(Effect, &'a [f64], Slope)> {
         let mut slopes = Vec::new();
         for e in self.effects.iter().filter(|e| e.effect.info().site == site) {
             match e.effect.slope(&e.values, &at) {

@@ -8,7 +8,7 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OmittedEffect {
     /// The effect.
-    pub effect: &'static dyn Effect,
+    pub effect: Effect,
     /// Its joint, counted from 0; none for the whole rig.
     pub joint: Option<usize>,
     /// What keeps it from having a derivative.
@@ -35,7 +35,7 @@ pub enum NonSmooth {
 }
 
 impl OmittedEffect {
-    pub(super) fn new(effect: &'static dyn Effect, joint: Option<usize>) -> OmittedEffect {
+    pub(super) fn new(effect: Effect, joint: Option<usize>) -> OmittedEffect {
         let why = match effect.info().site {
             Site::Friction => NonSmooth::JumpsAtStandstill,
             Site::Command => NonSmooth::DeadAtZero,

@@ -63,7 +63,7 @@ fn turns(model: &Model, joint: usize) -> bool {
 /// Whether an encoder or sensor that this effect changes is read at a joint: by the log, or by the
 /// regulator of its drive, to which the times of the log's columns are all one. A rate shows what
 /// scales the reading, lets it trail or moves it in time.
-fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
+fn is_read(effect: Effect, model: &Model, joint: usize) -> bool {
     let info = effect.info();
     let regulated = matches!(model.joints[joint].drive, Drive::Position { .. });
     let signal = model.log.joints[joint].signal();
@@ -92,7 +92,7 @@ fn is_read(effect: &dyn Effect, model: &Model, joint: usize) -> bool {
 
 /// Whether something tells the times that an effect of a log's column changes: another joint, the
 /// joint's own rate sensor, or the input.
-fn is_timed(effect: &dyn Effect, model: &Model, motions: &[Motion], joint: usize) -> bool {
+fn is_timed(effect: Effect, model: &Model, motions: &[Motion], joint: usize) -> bool {
     effect
         .reading_offset_s(&first_values(effect.info()))
         .is_none()

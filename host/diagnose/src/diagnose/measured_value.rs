@@ -16,7 +16,7 @@ pub fn values_behind(candidate: &Candidate, model: &Model) -> Vec<ParameterPath>
     joints.into_iter().filter_map(behind).collect()
 }
 
-fn value_behind(effect: &dyn Effect, index: usize, model: &Model) -> Option<ParameterPath> {
+fn value_behind(effect: Effect, index: usize, model: &Model) -> Option<ParameterPath> {
     let joint = |field| ParameterPath::Joint { index, field };
     let path = match (effect.value_behind()?, model.joints.get(index)?.axis()) {
         (ValueBehind::StallTorque, Axis::Hinge) => joint(JointField::StallTorque),

@@ -123,11 +123,7 @@ fn add(card: &SavedCard, saved: &SavedSession) -> Markup {
 }
 
 /// The signature of the law, and this log's residual over the quantity that the law depends on.
-fn pictures(
-    effect: &'static dyn Effect,
-    joint: Option<usize>,
-    evaluation: &SessionEvaluation,
-) -> Markup {
+fn pictures(effect: Effect, joint: Option<usize>, evaluation: &SessionEvaluation) -> Markup {
     let drawn = signature(effect);
     let joint = joint.unwrap_or(0);
     let beside = (joint < evaluation.run.model.link_count())

@@ -1,11 +1,11 @@
 //! Effects and values by names for people: "Coulomb friction at joint 1", "mass of link 1".
 
+use crate::effects::split_unit;
 use crate::effects::{Effect, named};
 use crate::model::ParameterPath;
-use crate::model::suggest::split_unit;
 
 /// An effect and its joint, counted from 0, of an address such as `coulomb@1`.
-pub fn effect_of(address: &str) -> Option<(&'static dyn Effect, Option<usize>)> {
+pub fn effect_of(address: &str) -> Option<(Effect, Option<usize>)> {
     let (id, joint) = match address.split_once('@') {
         Some((id, "all")) => (id, None),
         Some((id, joint)) => (id, Some(joint.parse::<usize>().ok()?.checked_sub(1)?)),

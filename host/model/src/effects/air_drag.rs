@@ -1,12 +1,12 @@
 //! Air drag: resistance in proportion to the square of speed.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// -c w |w|.
 #[derive(Debug)]
 pub struct AirDrag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "air_drag",
     title: "air drag",
     aliases: &[
@@ -24,16 +24,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -coefficient_nm_s2_rad2 * w * |w|",
-    parameters: &[Parameter {
-        key: "coefficient_nm_s2_rad2",
-        unit: "N m s^2/rad^2",
-        meaning: "resistance per square of speed",
-        off: Some(0.0),
-        typical: (0.0001, 0.005),
-        bounds: (0.0, 1.0),
-        starts: &[0.001, 0.0001],
-    }],
+    parameters: &[
+        Parameter::of("coefficient_nm_s2_rad2", "resistance per square of speed")
+            .off(0.0)
+            .typical(0.0001, 0.005)
+            .bounds(0.0, 1.0)
+            .starts(&[0.001, 0.0001]),
+    ],
     looks_like: "wide swings shrink fast and narrow ones hardly; the residual torque is a parabola \
      over speed with the sign of the speed",
     confused_with: &[
@@ -51,27 +50,17 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = -coefficient_n_s2_m2 * w * |w|",
-    parameters: &[Parameter {
-        key: "coefficient_n_s2_m2",
-        unit: "N s^2/m^2",
-        meaning: "resistance per square of speed",
-        off: Some(0.0),
-        typical: (0.005, 1.0),
-        bounds: (0.0, 1000.0),
-        starts: &[0.1, 0.01],
-    }],
+    parameters: &[
+        Parameter::of("coefficient_n_s2_m2", "resistance per square of speed")
+            .off(0.0)
+            .typical(0.005, 1.0)
+            .bounds(0.0, 1000.0)
+            .starts(&[0.1, 0.01]),
+    ],
     ..INFO
 };
 
-impl Effect for AirDrag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for AirDrag {
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         -values[0] * at.speed_rad_s * at.speed_rad_s.abs()
     }

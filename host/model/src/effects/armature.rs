@@ -1,34 +1,32 @@
 //! Armature: the rotor, seen through the gear, adds inertia without weight.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// J + N^2 J_r at the joint, with gear ratio N and rotor inertia J_r.
 #[derive(Debug)]
 pub struct Armature;
 
 /// Inertia of the rotor as seen at the joint.
-pub(super) const ROTOR: Parameter = Parameter {
-    key: "inertia_kg_m2",
-    unit: "kg m^2",
-    meaning: "rotor inertia times the square of the gear ratio",
-    off: Some(0.0),
-    typical: (0.0005, 0.02),
-    bounds: (0.0, 1.0),
-    starts: &[0.002, 0.01],
-};
+pub(super) const ROTOR: Parameter = Parameter::of(
+    "inertia_kg_m2",
+    "rotor inertia times the square of the gear ratio",
+)
+.off(0.0)
+.typical(0.0005, 0.02)
+.bounds(0.0, 1.0)
+.starts(&[0.002, 0.01]);
 
 /// The same at a joint that slides.
-pub(super) const ROTOR_ON_SLIDE: Parameter = Parameter {
-    key: "inertia_kg",
-    unit: "kg",
-    meaning: "rotor inertia over the square of the displacement per turn in rad",
-    off: Some(0.0),
-    typical: (0.01, 1.0),
-    bounds: (0.0, 100.0),
-    starts: &[0.05, 0.3],
-};
+pub(super) const ROTOR_ON_SLIDE: Parameter = Parameter::of(
+    "inertia_kg",
+    "rotor inertia over the square of the displacement per turn in rad",
+)
+.off(0.0)
+.typical(0.01, 1.0)
+.bounds(0.0, 100.0)
+.starts(&[0.05, 0.3]);
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "armature",
     title: "armature inertia",
     aliases: &[
@@ -43,6 +41,7 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "inertia at the joint + inertia_kg_m2, without weight",
     parameters: &[ROTOR],
     looks_like: "the arm starts and stops late, yet holds still at the right duty; a free swing is \
@@ -70,17 +69,9 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     ..INFO
 };
 
-impl Effect for Armature {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
-    fn is_of_servo(&self) -> bool {
-        true
+impl Law for Armature {
+    fn comes_with_servo(&self) -> Option<bool> {
+        Some(true)
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {

@@ -1,13 +1,13 @@
 //! Backlash: play between joint and encoder.
 
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap /
 /// 2 behind.
 #[derive(Debug)]
 pub struct Backlash;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "backlash",
     title: "backlash before the encoder",
     aliases: &[
@@ -22,16 +22,13 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "the reading stays while |q - reading| <= gap_rad / 2, else it follows at that distance",
-    parameters: &[Parameter {
-        key: "gap_rad",
-        unit: "rad",
-        meaning: "free play, from flank to flank",
-        off: Some(0.0),
-        typical: (0.002, 0.05),
-        bounds: (0.0, 0.5),
-        starts: &[0.01, 0.03],
-    }],
+    parameters: &[Parameter::of("gap_rad", "free play, from flank to flank")
+        .off(0.0)
+        .typical(0.002, 0.05)
+        .bounds(0.0, 0.5)
+        .starts(&[0.01, 0.03])],
     looks_like: "after each reversal the reading stands still over a fixed angle, whatever the \
      amplitude, the load or the speed",
     confused_with: &[
@@ -55,27 +52,15 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "the reading stays while |q - reading| <= gap_m / 2, else it follows at that distance",
-    parameters: &[Parameter {
-        key: "gap_m",
-        unit: "m",
-        meaning: "free play, from flank to flank",
-        off: Some(0.0),
-        typical: (0.0001, 0.005),
-        bounds: (0.0, 0.1),
-        starts: &[0.001, 0.003],
-    }],
+    parameters: &[Parameter::of("gap_m", "free play, from flank to flank")
+        .off(0.0)
+        .typical(0.0001, 0.005)
+        .bounds(0.0, 0.1)
+        .starts(&[0.001, 0.003])],
     ..INFO
 };
 
-impl Effect for Backlash {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for Backlash {
     fn slipped(&self, [encoded_rad, reading_rad, draws_away_rad_s, _]: SenseMemory) -> [f64; 2] {
         [encoded_rad - reading_rad, draws_away_rad_s]
     }

@@ -1,14 +1,14 @@
 //! Base compliance: the bar, or the mount, gives way.
 
 use super::gear::HIGHEST_RAD_S;
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// m x'' + c x' + k x = -F in both directions of the rig's plane, F being what the chain asks of
 /// its base; c by the damping ratio c / (2 sqrt(k m)).
 #[derive(Debug)]
 pub struct BaseCompliance;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "base_compliance",
     title: "compliance of the base or bar",
     aliases: &[
@@ -25,36 +25,29 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::WholeRig,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "mass_kg * x'' + c * x' + stiffness_n_m * x = force of the chain, c = 2 * damping_ratio * \
      sqrt(stiffness_n_m * mass_kg); likewise upward",
     parameters: &[
-        Parameter {
-            key: "stiffness_n_m",
-            unit: "N/m",
-            meaning: "force per displacement, the same sideways and upward",
-            off: Some(f64::INFINITY),
-            typical: (50.0, 20_000.0),
-            bounds: (5.0, 1e7),
-            starts: &[100.0, 400.0, 1600.0],
-        },
-        Parameter {
-            key: "mass_kg",
-            unit: "kg",
-            meaning: "what moves along with the base",
-            off: None,
-            typical: (0.1, 5.0),
-            bounds: (0.05, 100.0),
-            starts: &[0.5],
-        },
-        Parameter {
-            key: "damping_ratio",
-            unit: "1",
-            meaning: "damping, as a share of what lets the empty base settle without ringing",
-            off: None,
-            typical: (0.02, 0.3),
-            bounds: (0.0, 1.0),
-            starts: &[0.1],
-        },
+        Parameter::of(
+            "stiffness_n_m",
+            "force per displacement, the same sideways and upward",
+        )
+        .off(f64::INFINITY)
+        .typical(50.0, 20_000.0)
+        .bounds(5.0, 1e7)
+        .starts(&[100.0, 400.0, 1600.0]),
+        Parameter::of("mass_kg", "what moves along with the base")
+            .typical(0.1, 5.0)
+            .bounds(0.05, 100.0)
+            .starts(&[0.5]),
+        Parameter::of(
+            "damping_ratio",
+            "damping, as a share of what lets the empty base settle without ringing",
+        )
+        .typical(0.02, 0.3)
+        .bounds(0.0, 1.0)
+        .starts(&[0.1]),
     ],
     looks_like: "a slow swing that all joints share and that no drive makes; fast motions are \
      wrong, slow ones right",
@@ -102,11 +95,7 @@ impl BaseSpring {
     }
 }
 
-impl Effect for BaseCompliance {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
+impl Law for BaseCompliance {
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
         rig.base_spring = BaseSpring::new(values[1], values[0], values[2]);
     }

@@ -1,13 +1,13 @@
 //! Base tilt: the rig does not stand plumb.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// Gravity turned by b in the plane of the rig, counter-clockwise; by -b where the rig stands
 /// turned by 180 degrees about the vertical.
 #[derive(Debug)]
 pub struct BaseTilt;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "base_tilt",
     title: "base tilt",
     aliases: &[
@@ -21,16 +21,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::WholeRig,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "gravity turned by angle_rad in the plane of the rig",
-    parameters: &[Parameter {
-        key: "angle_rad",
-        unit: "rad",
-        meaning: "tilt of the base, counter-clockwise",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-1.6, 1.6),
-        starts: &[0.02, -0.02],
-    }],
+    parameters: &[
+        Parameter::of("angle_rad", "tilt of the base, counter-clockwise")
+            .off(0.0)
+            .typical(-0.05, 0.05)
+            .bounds(-1.6, 1.6)
+            .starts(&[0.02, -0.02]),
+    ],
     looks_like: "a static error with the same phase in the world on every link",
     confused_with: &[
         "com_angle: both shift the angle at which gravity vanishes; a centre of mass keeps its \
@@ -43,11 +42,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
 };
 
-impl Effect for BaseTilt {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
+impl Law for BaseTilt {
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
         rig.gravity_turn_rad += if rig.turned { -values[0] } else { values[0] };
     }

@@ -1,12 +1,12 @@
 //! Load friction of a plain bearing: the weight it carries and the swing press on it.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// r F, with r the friction coefficient times the bearing radius and F the force in the bearing.
 #[derive(Debug)]
 pub struct BearingFriction;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "bearing_friction",
     title: "load friction of a plain bearing",
     aliases: &[
@@ -19,16 +19,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::PassiveJoint,
     needs: Needs::BearingLoad,
+    on_slide: OnSlide::Never,
     law: "friction = radius_m * bearing force, against the motion",
-    parameters: &[Parameter {
-        key: "radius_m",
-        unit: "m",
-        meaning: "friction coefficient times bearing radius",
-        off: Some(0.0),
-        typical: (1e-5, 0.005),
-        bounds: (0.0, 0.05),
-        starts: &[0.001, 0.0001],
-    }],
+    parameters: &[
+        Parameter::of("radius_m", "friction coefficient times bearing radius")
+            .off(0.0)
+            .typical(1e-5, 0.005)
+            .bounds(0.0, 0.05)
+            .starts(&[0.001, 0.0001]),
+    ],
     looks_like: "a free swing loses more angle per period while it is wide, since the swing itself \
      loads the bearing, and still stops off the bottom",
     confused_with: &[
@@ -42,11 +41,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Bowden, Tabor, The Friction and Lubrication of Solids (1950)",
 };
 
-impl Effect for BearingFriction {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
+impl Law for BearingFriction {
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.bearing_load_n
     }

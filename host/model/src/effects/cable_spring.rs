@@ -1,12 +1,12 @@
 //! Cable spring: a cable across the joint pulls it toward a rest angle.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// -k (q - q_0).
 #[derive(Debug)]
 pub struct CableSpring;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "cable_spring",
     title: "cable spring",
     aliases: &[
@@ -24,26 +24,18 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -stiffness_nm_rad * (q - rest_angle_rad)",
     parameters: &[
-        Parameter {
-            key: "stiffness_nm_rad",
-            unit: "N m/rad",
-            meaning: "torque per angle",
-            off: Some(0.0),
-            typical: (0.002, 0.1),
-            bounds: (0.0, 50.0),
-            starts: &[0.01, 0.05],
-        },
-        Parameter {
-            key: "rest_angle_rad",
-            unit: "rad",
-            meaning: "angle at which the cable does not pull",
-            off: None,
-            typical: (-1.6, 1.6),
-            bounds: (-3.2, 3.2),
-            starts: &[0.0, -1.0, 1.0],
-        },
+        Parameter::of("stiffness_nm_rad", "torque per angle")
+            .off(0.0)
+            .typical(0.002, 0.1)
+            .bounds(0.0, 50.0)
+            .starts(&[0.01, 0.05]),
+        Parameter::of("rest_angle_rad", "angle at which the cable does not pull")
+            .typical(-1.6, 1.6)
+            .bounds(-3.2, 3.2)
+            .starts(&[0.0, -1.0, 1.0]),
     ],
     looks_like: "a static error that is a straight line over the joint angle, the same at every \
      speed",
@@ -66,37 +58,20 @@ static INFO: EffectInfo = EffectInfo {
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = -stiffness_n_m * (q - rest_m)",
     parameters: &[
-        Parameter {
-            key: "stiffness_n_m",
-            unit: "N/m",
-            meaning: "force per displacement",
-            off: Some(0.0),
-            typical: (0.1, 50.0),
-            bounds: (0.0, 100000.0),
-            starts: &[1.0, 10.0],
-        },
-        Parameter {
-            key: "rest_m",
-            unit: "m",
-            meaning: "displacement at which the cable does not pull",
-            off: None,
-            typical: (-0.5, 0.5),
-            bounds: (-10.0, 10.0),
-            starts: &[0.0, -0.3, 0.3],
-        },
+        Parameter::of("stiffness_n_m", "force per displacement")
+            .off(0.0)
+            .typical(0.1, 50.0)
+            .bounds(0.0, 100000.0)
+            .starts(&[1.0, 10.0]),
+        Parameter::of("rest_m", "displacement at which the cable does not pull")
+            .typical(-0.5, 0.5)
+            .bounds(-10.0, 10.0)
+            .starts(&[0.0, -0.3, 0.3]),
     ],
     ..INFO
 };
 
-impl Effect for CableSpring {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for CableSpring {
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         let [stiffness_nm_rad, rest_rad] = values else {
             return 0.0;

@@ -1,6 +1,6 @@
 //! Cogging and gear ripple: a torque that repeats around the turn.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 use crate::dynamics::Lane;
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 #[derive(Debug)]
 pub struct Cogging;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "cogging",
     title: "cogging and gear ripple",
     aliases: &[
@@ -22,38 +22,28 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Never,
     law: "torque = amplitude_nm * sin(periods_per_turn * q + phase_rad)",
     parameters: &[
-        Parameter {
-            key: "amplitude_nm",
-            unit: "N m",
-            meaning: "height of the ripple",
-            off: Some(0.0),
-            typical: (0.002, 0.1),
-            bounds: (0.0, 5.0),
-            starts: &[0.01, 0.05],
-        },
-        Parameter {
-            key: "periods_per_turn",
-            unit: "1",
-            meaning: "ripples in one turn of the joint; one or two would be gravity, not teeth or \
+        Parameter::of("amplitude_nm", "height of the ripple")
+            .off(0.0)
+            .typical(0.002, 0.1)
+            .bounds(0.0, 5.0)
+            .starts(&[0.01, 0.05]),
+        Parameter::of(
+            "periods_per_turn",
+            "ripples in one turn of the joint; one or two would be gravity, not teeth or \
              poles",
-            off: None,
-            typical: (4.0, 60.0),
-            bounds: (3.0, 200.0),
-            starts: &[
-                12.0, 4.0, 6.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0, 48.0, 60.0, 80.0, 100.0, 150.0,
-            ],
-        },
-        Parameter {
-            key: "phase_rad",
-            unit: "rad",
-            meaning: "phase of the ripple at angle zero",
-            off: None,
-            typical: (-PI, PI),
-            bounds: (-20.0, 20.0),
-            starts: &[0.0, PI / 2.0, PI, -PI / 2.0],
-        },
+        )
+        .typical(4.0, 60.0)
+        .bounds(3.0, 200.0)
+        .starts(&[
+            12.0, 4.0, 6.0, 8.0, 16.0, 20.0, 24.0, 32.0, 40.0, 48.0, 60.0, 80.0, 100.0, 150.0,
+        ]),
+        Parameter::of("phase_rad", "phase of the ripple at angle zero")
+            .typical(-PI, PI)
+            .bounds(-20.0, 20.0)
+            .starts(&[0.0, PI / 2.0, PI, -PI / 2.0]),
     ],
     looks_like: "the residual torque repeats over the joint angle at every speed; in time its \
      frequency grows with the speed",
@@ -69,11 +59,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Holtz, Springob, IEEE Transactions on Industrial Electronics 43 (1996) 309",
 };
 
-impl Effect for Cogging {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
+impl Law for Cogging {
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
         let [amplitude_nm, periods_per_turn, phase_rad] = values else {
             return 0.0;

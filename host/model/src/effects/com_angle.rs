@@ -1,12 +1,12 @@
 //! Centre-of-mass angle: the centre of mass lies beside the line between the joints.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
 
 /// m g l_c sin(q + a), for a link that hangs at q = 0.
 #[derive(Debug)]
 pub struct ComAngle;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "com_angle",
     title: "angle of the centre of mass",
     aliases: &[
@@ -21,16 +21,16 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "the centre of mass of the link is turned by angle_rad about its joint",
-    parameters: &[Parameter {
-        key: "angle_rad",
-        unit: "rad",
-        meaning: "angle of the centre of mass off its place in the model",
-        off: Some(0.0),
-        typical: (-0.2, 0.2),
-        bounds: (-3.2, 3.2),
-        starts: &[0.05, -0.05],
-    }],
+    parameters: &[Parameter::of(
+        "angle_rad",
+        "angle of the centre of mass off its place in the model",
+    )
+    .off(0.0)
+    .typical(-0.2, 0.2)
+    .bounds(-3.2, 3.2)
+    .starts(&[0.05, -0.05])],
     looks_like: "a static error that follows the cosine of the angle from hanging; the arm hangs \
      off its zero",
     confused_with: &[
@@ -50,15 +50,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "An, Atkeson, Hollerbach, Model-Based Control of a Robot Manipulator (1988)",
 };
 
-impl Effect for ComAngle {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for ComAngle {
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
         rig.chain.links[joint].com_angle_rad += values[0];
     }

@@ -1,12 +1,12 @@
 //! Coulomb friction: the same resistance at every speed, and a hold at rest.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// tau_f = -tau_c sgn(w); at rest the joint is held up to tau_c.
 #[derive(Debug)]
 pub struct Coulomb;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "coulomb",
     title: "Coulomb friction",
     aliases: &[
@@ -20,16 +20,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = torque_nm * sgn(w), against the motion; at rest it holds up to torque_nm",
-    parameters: &[Parameter {
-        key: "torque_nm",
-        unit: "N m",
-        meaning: "friction torque, the same at every speed",
-        off: Some(0.0),
-        typical: (0.005, 0.2),
-        bounds: (0.0, 10.0),
-        starts: &[0.02, 0.1],
-    }],
+    parameters: &[
+        Parameter::of("torque_nm", "friction torque, the same at every speed")
+            .off(0.0)
+            .typical(0.005, 0.2)
+            .bounds(0.0, 10.0)
+            .starts(&[0.02, 0.1]),
+    ],
     looks_like: "the residual torque is a square wave in step with the sign of the speed; a free \
      swing loses the same angle every half period (straight envelope) and stops off the bottom",
     confused_with: &[
@@ -50,27 +49,17 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction = force_n * sgn(w), against the motion; at rest it holds up to force_n",
-    parameters: &[Parameter {
-        key: "force_n",
-        unit: "N",
-        meaning: "friction force, the same at every speed",
-        off: Some(0.0),
-        typical: (0.05, 10.0),
-        bounds: (0.0, 1000.0),
-        starts: &[0.5, 5.0],
-    }],
+    parameters: &[
+        Parameter::of("force_n", "friction force, the same at every speed")
+            .off(0.0)
+            .typical(0.05, 10.0)
+            .bounds(0.0, 1000.0)
+            .starts(&[0.5, 5.0]),
+    ],
     ..INFO
 };
 
-impl Effect for Coulomb {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for Coulomb {
     fn friction(&self, values: &[f64], _at: &FrictionState) -> f64 {
         values[0]
     }

@@ -1,39 +1,38 @@
 //! Dead zone: the drive swallows small commands.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// u = 0 while |u| <= width, else u + punch sgn(u); never reversed; punch does not lead beyond full
 /// range.
 #[derive(Debug)]
 pub struct DeadZone;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "dead_zone",
     title: "dead zone of the drive",
     aliases: &["deadband", "minimum duty", "minimum PWM", "insensitivity"],
     site: Site::Command,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "applied duty = 0 while |u| <= width, else u + punch * sgn(u)",
     parameters: &[
-        Parameter {
-            key: "width",
-            unit: "1",
-            meaning: "share of full range below which the command does nothing",
-            off: Some(0.0),
-            typical: (0.02, 0.15),
-            bounds: (0.0, 0.6),
-            starts: &[0.05, 0.12],
-        },
-        Parameter {
-            key: "punch",
-            unit: "1",
-            meaning: "duty added to every command outside the zone; below zero it takes away",
-            off: Some(0.0),
-            typical: (0.0, 0.05),
-            bounds: (-0.3, 0.3),
-            starts: &[0.0, 0.03],
-        },
+        Parameter::of(
+            "width",
+            "share of full range below which the command does nothing",
+        )
+        .off(0.0)
+        .typical(0.02, 0.15)
+        .bounds(0.0, 0.6)
+        .starts(&[0.05, 0.12]),
+        Parameter::of(
+            "punch",
+            "duty added to every command outside the zone; below zero it takes away",
+        )
+        .off(0.0)
+        .typical(0.0, 0.05)
+        .bounds(-0.3, 0.3)
+        .starts(&[0.0, 0.03]),
     ],
     looks_like: "near zero command the arm rests anywhere on a plateau of error; under feedback it \
      hunts in a limit cycle; with the torque off nothing remains of it",
@@ -52,15 +51,7 @@ static INFO: EffectInfo = EffectInfo {
      Nonlinearities (1996); ROBOTIS AX-12 manual, compliance margin and punch",
 };
 
-impl Effect for DeadZone {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for DeadZone {
     fn difference(&self) -> f64 {
         2e-2
     }

@@ -1,12 +1,12 @@
 //! Transport delay: the drive acts on an input that is some time old.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// u(t - T).
 #[derive(Debug)]
 pub struct Delay;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "delay",
     title: "transport delay",
     aliases: &[
@@ -21,16 +21,13 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Timing,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "the drive applies u(t - delay_s)",
-    parameters: &[Parameter {
-        key: "delay_s",
-        unit: "s",
-        meaning: "age of the input when it acts",
-        off: Some(0.0),
-        typical: (0.005, 0.1),
-        bounds: (0.0, 0.5),
-        starts: &[0.02, 0.08],
-    }],
+    parameters: &[Parameter::of("delay_s", "age of the input when it acts")
+        .off(0.0)
+        .typical(0.005, 0.1)
+        .bounds(0.0, 0.5)
+        .starts(&[0.02, 0.08])],
     looks_like: "the simulated motion runs ahead of the measured one by the same time at every \
      speed; input and residual correlate best at that lag",
     confused_with: &[
@@ -45,15 +42,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Ljung, System Identification, 2nd ed., section 4.2",
 };
 
-impl Effect for Delay {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for Delay {
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0]
     }

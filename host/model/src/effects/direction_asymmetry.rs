@@ -1,12 +1,12 @@
 //! Direction asymmetry: one direction resists more than the other.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// tau_d sgn(w): the friction is tau_c + tau_d forwards and tau_c - tau_d backwards.
 #[derive(Debug)]
 pub struct DirectionAsymmetry;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "direction_asymmetry",
     title: "direction asymmetry of friction",
     aliases: &[
@@ -18,16 +18,16 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction += half_difference_nm * sgn(w)",
-    parameters: &[Parameter {
-        key: "half_difference_nm",
-        unit: "N m",
-        meaning: "half of forward minus backward friction",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-5.0, 5.0),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of(
+        "half_difference_nm",
+        "half of forward minus backward friction",
+    )
+    .off(0.0)
+    .typical(-0.05, 0.05)
+    .bounds(-5.0, 5.0)
+    .starts(&[0.01, -0.01])],
     looks_like: "the residual torque has one constant sign while the joint moves, whichever way it \
      goes, and none while it rests",
     confused_with: &[
@@ -46,27 +46,18 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction += half_difference_n * sgn(w)",
-    parameters: &[Parameter {
-        key: "half_difference_n",
-        unit: "N",
-        meaning: "half of forward minus backward friction",
-        off: Some(0.0),
-        typical: (-2.0, 2.0),
-        bounds: (-500.0, 500.0),
-        starts: &[0.3, -0.3],
-    }],
+    parameters: &[Parameter::of(
+        "half_difference_n",
+        "half of forward minus backward friction",
+    )
+    .off(0.0)
+    .typical(-2.0, 2.0)
+    .bounds(-500.0, 500.0)
+    .starts(&[0.3, -0.3])],
     ..INFO
 };
 
-impl Effect for DirectionAsymmetry {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for DirectionAsymmetry {
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.direction
     }

@@ -1,33 +1,20 @@
-//! What an effect may change: a hook for each site.
+//! What an effect may change: a hook for each site, on the axis of its joint.
 
 use super::{
     AtRest, Axis, DriveState, EffectInfo, Encoded, FrictionState, Gear, JointState, MemoryCell,
-    Rig, SenseMemory, Site, Slope, StepState, ValueBehind,
+    OnSlide, Rig, SenseMemory, Site, Slope, StepState, ValueBehind,
 };
-use std::fmt;
+use std::{fmt, ops};
 
 /// Relative step of a finite difference in the values of a smooth law.
 pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
 
-/// A departure from the rigid chain with ideal drives and sensors.
+/// A law by which joints depart from the rigid chain with ideal drives and sensors.
 ///
-/// Every hook's default is identity; an effect overrides that of its site. `values` are in its
+/// It is one law for both kinds of joint: in rad and N m where the joint turns, in m and N where it
+/// slides. Every hook's default is identity; an effect overrides that of its site. `values` are in its
 /// parameters' order.
-pub trait Effect: Sync + fmt::Debug {
-    /// What people and tools need to know of it.
-    fn info(&self) -> &'static EffectInfo;
-
-    /// What people and tools need to know of it at a joint that slides, in m and N: `info()` itself
-    /// where no unit is one of angles; none where it cannot act there.
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        None
-    }
-
-    /// The joints whose units its values have; see [`super::on_axis`].
-    fn axis(&self) -> Axis {
-        Axis::Hinge
-    }
-
+pub trait Law: Sync + fmt::Debug {
     /// Whether a model file defines it: see [`super::expression`].
     fn is_users(&self) -> bool {
         false
@@ -39,13 +26,9 @@ pub trait Effect: Sync + fmt::Debug {
         SMOOTH_DIFFERENCE
     }
 
-    /// Whether it comes with the servo or its driver, so that joints of one servo type may share
-    /// it with the same values; else with the link, the bearing or the calibration of one joint.
-    fn is_of_servo(&self) -> bool {
-        matches!(
-            self.info().site,
-            Site::Timing | Site::Command | Site::Drive | Site::Gear | Site::Friction | Site::Sensor
-        )
+    /// Whether it comes with the servo; `None` where its site tells. See [`Effect::is_of_servo`].
+    fn comes_with_servo(&self) -> Option<bool> {
+        None
     }
 
     /// The value of the model that it changes where that is all it does: measured on the rig, such
@@ -182,8 +165,74 @@ pub trait Effect: Sync + fmt::Debug {
     }
 }
 
-impl PartialEq for dyn Effect {
-    fn eq(&self, other: &dyn Effect) -> bool {
-        self.info().id == other.info().id
+/// A departure from the rigid chain with ideal drives and sensors: a law, what there is to say of
+/// it, and how the joints move whose units its values have.
+#[derive(Clone, Copy)]
+pub struct Effect {
+    law: &'static dyn Law,
+    info: &'static EffectInfo,
+    axis: Axis,
+}
+
+impl Effect {
+    /// The effect of a law at joints that turn.
+    pub(super) const fn of(law: &'static dyn Law, info: &'static EffectInfo) -> Effect {
+        Effect {
+            law,
+            info,
+            axis: Axis::Hinge,
+        }
+    }
+
+    /// What people and tools need to know of it at a joint of its axis.
+    pub fn info(self) -> &'static EffectInfo {
+        match (self.axis, self.info.on_slide) {
+            (Axis::Slide, OnSlide::Own(info)) => info,
+            _ => self.info,
+        }
+    }
+
+    /// Whether it comes with the servo or its driver, so that joints of one servo type may share
+    /// it with the same values; else with the link, the bearing or the calibration of one joint.
+    pub fn is_of_servo(self) -> bool {
+        use Site::{Command, Drive, Friction, Gear, Sensor, Timing};
+        let by_site = || {
+            matches!(
+                self.info.site,
+                Timing | Command | Drive | Gear | Friction | Sensor
+            )
+        };
+        self.law.comes_with_servo().unwrap_or_else(by_site)
+    }
+
+    /// The joints whose units its values have.
+    pub fn axis(self) -> Axis {
+        self.axis
+    }
+
+    /// It at a joint of this kind; none where it cannot act.
+    pub fn on(self, axis: Axis) -> Option<Effect> {
+        let acts = axis == Axis::Hinge || !matches!(self.info.on_slide, OnSlide::Never);
+        acts.then_some(Effect { axis, ..self })
+    }
+}
+
+impl ops::Deref for Effect {
+    type Target = dyn Law;
+
+    fn deref(&self) -> &Self::Target {
+        self.law
+    }
+}
+
+impl PartialEq for Effect {
+    fn eq(&self, other: &Effect) -> bool {
+        self.info.id == other.info.id
+    }
+}
+
+impl fmt::Debug for Effect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({:?})", self.info.id, self.axis)
     }
 }

@@ -1,12 +1,12 @@
 //! Encoder scale: the reading stretches the angle.
 
-use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// s q.
 #[derive(Debug)]
 pub struct EncoderScale;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "encoder_scale",
     title: "encoder scale",
     aliases: &[
@@ -20,16 +20,13 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "reading = factor * q",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "angle read over true angle",
-        off: Some(1.0),
-        typical: (0.95, 1.05),
-        bounds: (0.5, 2.0),
-        starts: &[0.98, 1.02],
-    }],
+    parameters: &[Parameter::of("factor", "angle read over true angle")
+        .off(1.0)
+        .typical(0.95, 1.05)
+        .bounds(0.5, 2.0)
+        .starts(&[0.98, 1.02])],
     looks_like: "an error in proportion to the angle from the encoder's zero, the same at rest and \
      in motion",
     confused_with: &[
@@ -45,15 +42,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Mooring, Roth, Driels, Fundamentals of Manipulator Calibration (1991)",
 };
 
-impl Effect for EncoderScale {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for EncoderScale {
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
         values[0] * angle_rad
     }

@@ -1,12 +1,12 @@
 //! Encoder zero: the reading is off by a constant.
 
-use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// q + o.
 #[derive(Debug)]
 pub struct EncoderZero;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "encoder_zero",
     title: "encoder zero",
     aliases: &[
@@ -21,16 +21,13 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Encoder,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "reading = q + offset_rad",
-    parameters: &[Parameter {
-        key: "offset_rad",
-        unit: "rad",
-        meaning: "reading at true angle zero",
-        off: Some(0.0),
-        typical: (-0.1, 0.1),
-        bounds: (-3.2, 3.2),
-        starts: &[0.02, -0.02],
-    }],
+    parameters: &[Parameter::of("offset_rad", "reading at true angle zero")
+        .off(0.0)
+        .typical(-0.1, 0.1)
+        .bounds(-3.2, 3.2)
+        .starts(&[0.02, -0.02])],
     looks_like: "a constant error of the angle; the torque of gravity peaks at the wrong reading",
     confused_with: &[
         "grip_slip: a zero that is off is off from the beginning and stays so",
@@ -49,27 +46,17 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "reading = q + offset_m",
-    parameters: &[Parameter {
-        key: "offset_m",
-        unit: "m",
-        meaning: "reading at true displacement zero",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-10.0, 10.0),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[
+        Parameter::of("offset_m", "reading at true displacement zero")
+            .off(0.0)
+            .typical(-0.05, 0.05)
+            .bounds(-10.0, 10.0)
+            .starts(&[0.01, -0.01]),
+    ],
     ..INFO
 };
 
-impl Effect for EncoderZero {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for EncoderZero {
     fn encode(&self, values: &[f64], angle_rad: f64) -> f64 {
         angle_rad + values[0]
     }

@@ -2,7 +2,7 @@
 
 use super::StepState;
 use super::{
-    AtRest, DriveState, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+    AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
 };
 
 /// tau s once |u| has been above a level for a time, which runs backwards below the level, from 0
@@ -11,7 +11,7 @@ use super::{
 #[derive(Debug)]
 pub struct FoldBack;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "fold_back",
     title: "protective fold-back of the torque",
     aliases: &[
@@ -23,35 +23,22 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "torque * remaining_share once |u| > level for after_s; as long below the level ends it",
     parameters: &[
-        Parameter {
-            key: "remaining_share",
-            unit: "1",
-            meaning: "share of the torque that remains",
-            off: Some(1.0),
-            typical: (0.2, 0.7),
-            bounds: (0.0, 1.0),
-            starts: &[0.5],
-        },
-        Parameter {
-            key: "level",
-            unit: "1",
-            meaning: "duty above which the time counts",
-            off: None,
-            typical: (0.1, 0.9),
-            bounds: (0.02, 0.99),
-            starts: &[0.1, 0.25, 0.05, 0.5],
-        },
-        Parameter {
-            key: "after_s",
-            unit: "s",
-            meaning: "time above the level until the torque falls",
-            off: None,
-            typical: (0.1, 2.0),
-            bounds: (0.02, 30.0),
-            starts: &[0.3, 0.15, 1.0],
-        },
+        Parameter::of("remaining_share", "share of the torque that remains")
+            .off(1.0)
+            .typical(0.2, 0.7)
+            .bounds(0.0, 1.0)
+            .starts(&[0.5]),
+        Parameter::of("level", "duty above which the time counts")
+            .typical(0.1, 0.9)
+            .bounds(0.02, 0.99)
+            .starts(&[0.1, 0.25, 0.05, 0.5]),
+        Parameter::of("after_s", "time above the level until the torque falls")
+            .typical(0.1, 2.0)
+            .bounds(0.02, 30.0)
+            .starts(&[0.3, 0.15, 1.0]),
     ],
     looks_like: "under a strong, lasting command the torque falls at one instant, and comes back \
      only after a rest",
@@ -64,15 +51,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "ROBOTIS AX-12 manual, alarm shutdown by overload; its torque limit falls",
 };
 
-impl Effect for FoldBack {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for FoldBack {
     fn difference(&self) -> f64 {
         2e-2
     }

@@ -1,13 +1,13 @@
 //! Backlash of the gear: motor and joint, each with its inertia, meet at either flank of a gap.
 
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
-use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// No torque within the gap; beyond it flanks that push, never pull, and hardly rebound.
 #[derive(Debug)]
 pub struct GearBacklash;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "gear_backlash",
     title: "backlash of the gear",
     aliases: &[
@@ -23,19 +23,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Gear,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "no torque while |q_m - q| < gap_rad / 2, else that of the flanks; inertia_kg_m2 * \
      d(w_m)/dt = motor - torque",
     parameters: &[
         ROTOR,
-        Parameter {
-            key: "gap_rad",
-            unit: "rad",
-            meaning: "free play, from flank to flank",
-            off: None,
-            typical: (0.005, 0.1),
-            bounds: (0.0, 0.5),
-            starts: &[0.03, 0.1],
-        },
+        Parameter::of("gap_rad", "free play, from flank to flank")
+            .typical(0.005, 0.1)
+            .bounds(0.0, 0.5)
+            .starts(&[0.03, 0.1]),
     ],
     looks_like: "whenever the torque turns, the arm is free for a moment and then knocked; it \
      rattles about a point of no load",
@@ -58,28 +54,15 @@ static ON_SLIDE: EffectInfo = EffectInfo {
      motor - force",
     parameters: &[
         ROTOR_ON_SLIDE,
-        Parameter {
-            key: "gap_m",
-            unit: "m",
-            meaning: "free play, from flank to flank",
-            off: None,
-            typical: (0.0002, 0.005),
-            bounds: (0.0, 0.1),
-            starts: &[0.001, 0.003],
-        },
+        Parameter::of("gap_m", "free play, from flank to flank")
+            .typical(0.0002, 0.005)
+            .bounds(0.0, 0.1)
+            .starts(&[0.001, 0.003]),
     ],
     ..INFO
 };
 
-impl Effect for GearBacklash {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for GearBacklash {
     fn difference(&self) -> f64 {
         5e-2
     }

@@ -1,7 +1,7 @@
 //! Gear compliance: the motor turns its joint through a spring.
 
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
-use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// k (q_m - q) + c (w_m - w) on the joint, and its reaction on a motor of inertia J, both as seen
 /// at the joint; c by the damping ratio c / (2 sqrt(k J)).
@@ -9,17 +9,15 @@ use super::{Effect, EffectInfo, Gear, Needs, Parameter, Scope, Site};
 pub struct GearCompliance;
 
 /// Damping of the spring, as a share of what lets the motor settle without ringing.
-const DAMPING: Parameter = Parameter {
-    key: "damping_ratio",
-    unit: "1",
-    meaning: "damping, as a share of what lets the motor settle without ringing",
-    off: None,
-    typical: (0.02, 0.3),
-    bounds: (0.0, 0.7),
-    starts: &[0.15],
-};
+const DAMPING: Parameter = Parameter::of(
+    "damping_ratio",
+    "damping, as a share of what lets the motor settle without ringing",
+)
+.typical(0.02, 0.3)
+.bounds(0.0, 0.7)
+.starts(&[0.15]);
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "gear_compliance",
     title: "compliance of the gear",
     aliases: &[
@@ -42,19 +40,18 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Gear,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = stiffness_nm_rad * (q_m - q) + c * (w_m - w), c = 2 * damping_ratio * \
      sqrt(stiffness_nm_rad * inertia_kg_m2); inertia_kg_m2 * d(w_m)/dt = motor - torque",
     parameters: &[
         ROTOR,
-        Parameter {
-            key: "stiffness_nm_rad",
-            unit: "N m/rad",
-            meaning: "torque per angle by which the motor is ahead of the joint",
-            off: None,
-            typical: (0.5, 50.0),
-            bounds: (0.05, 5000.0),
-            starts: &[1.0, 4.0],
-        },
+        Parameter::of(
+            "stiffness_nm_rad",
+            "torque per angle by which the motor is ahead of the joint",
+        )
+        .typical(0.5, 50.0)
+        .bounds(0.05, 5000.0)
+        .starts(&[1.0, 4.0]),
         DAMPING,
     ],
     looks_like: "after a step of the drive the arm rings at a frequency that gravity does not \
@@ -79,29 +76,19 @@ static ON_SLIDE: EffectInfo = EffectInfo {
      sqrt(stiffness_n_m * inertia_kg); inertia_kg * d(w_m)/dt = motor - force",
     parameters: &[
         ROTOR_ON_SLIDE,
-        Parameter {
-            key: "stiffness_n_m",
-            unit: "N/m",
-            meaning: "force per displacement by which the motor is ahead of the joint",
-            off: None,
-            typical: (50.0, 50_000.0),
-            bounds: (1.0, 1e7),
-            starts: &[100.0, 1000.0],
-        },
+        Parameter::of(
+            "stiffness_n_m",
+            "force per displacement by which the motor is ahead of the joint",
+        )
+        .typical(50.0, 50_000.0)
+        .bounds(1.0, 1e7)
+        .starts(&[100.0, 1000.0]),
         DAMPING,
     ],
     ..INFO
 };
 
-impl Effect for GearCompliance {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for GearCompliance {
     fn difference(&self) -> f64 {
         2e-3
     }

@@ -1,6 +1,6 @@
 //! Grip slip: the bar, or the shaft of an encoder, slips in what turns it.
 
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// Coulomb friction carries the sensor's shaft along, which it can speed up by no more than a; else
 /// it slips until both turn alike again. a is the friction's torque over the shaft's inertia: the
@@ -8,25 +8,25 @@ use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, S
 #[derive(Debug)]
 pub struct GripSlip;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "grip_slip",
     title: "slip of the grip or of the encoder's shaft",
     aliases: &["slip", "slippage", "coupling slip", "shaft slip", "grip"],
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "d(w_s)/dt = acceleration_rad_s2 * sgn(w - w_s) while the shaft slips, else w_s = w; \
      d(reading)/dt = w_s",
-    parameters: &[Parameter {
-        key: "acceleration_rad_s2",
-        unit: "rad/s^2",
-        meaning: "largest acceleration that the grip passes on: its torque over the shaft's \
-         inertia",
-        off: Some(f64::INFINITY),
-        typical: (8.0, 200.0),
-        bounds: (1.0, 1e5),
-        starts: &[30.0, 80.0],
-    }],
+    parameters: &[Parameter::of(
+        "acceleration_rad_s2",
+        "largest acceleration that the grip passes on: its torque over the shaft's \
+             inertia",
+    )
+    .off(f64::INFINITY)
+    .typical(8.0, 200.0)
+    .bounds(1.0, 1e5)
+    .starts(&[30.0, 80.0])],
     looks_like: "the zero of the reading jumps wherever the motion is hard, and stays where it \
      jumped to; gentle motion is read rightly",
     confused_with: &[
@@ -43,27 +43,18 @@ static INFO: EffectInfo = EffectInfo {
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "d(w_s)/dt = acceleration_m_s2 * sgn(w - w_s) while the tape slips, else w_s = w; \
      d(reading)/dt = w_s",
-    parameters: &[Parameter {
-        key: "acceleration_m_s2",
-        unit: "m/s^2",
-        meaning: "largest acceleration that the grip passes on: its force over the tape's mass",
-        off: Some(f64::INFINITY),
-        typical: (0.5, 20.0),
-        bounds: (0.02, 1e4),
-        starts: &[1.0, 4.0],
-    }],
+    parameters: &[Parameter::of(
+        "acceleration_m_s2",
+        "largest acceleration that the grip passes on: its force over the tape's mass",
+    )
+    .off(f64::INFINITY)
+    .typical(0.5, 20.0)
+    .bounds(0.02, 1e4)
+    .starts(&[1.0, 4.0])],
     ..INFO
 };
 
-impl Effect for GripSlip {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for GripSlip {
     fn difference(&self) -> f64 {
         5e-3
     }

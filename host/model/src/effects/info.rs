@@ -1,5 +1,6 @@
 //! What an effect says of itself.
 
+use super::unit_suffix::unit_of;
 use serde::{Serialize, Serializer};
 
 /// Where in the chain command -> drive -> joint -> body -> sensor an effect acts.
@@ -60,6 +61,17 @@ pub enum ValueBehind {
     LinkMass,
 }
 
+/// What an effect is at a joint that slides.
+#[derive(Debug, Clone, Copy)]
+pub enum OnSlide {
+    /// No unit of its values is one of angles: the same.
+    Same,
+    /// Its values have other keys and units, in m and N.
+    Own(&'static EffectInfo),
+    /// It cannot act there.
+    Never,
+}
+
 /// What must be logged or known for an effect to be a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
@@ -96,6 +108,54 @@ pub struct Parameter {
     pub starts: &'static [f64],
 }
 
+impl Parameter {
+    /// A value of this key, whose suffix says its unit, without its numbers.
+    pub const fn of(key: &'static str, meaning: &'static str) -> Parameter {
+        Parameter {
+            key,
+            unit: unit_of(key),
+            meaning,
+            off: None,
+            typical: (0.0, 0.0),
+            bounds: (0.0, 0.0),
+            starts: &[],
+        }
+    }
+
+    /// It vanishing at this value.
+    #[must_use]
+    pub const fn off(self, at: f64) -> Parameter {
+        Parameter {
+            off: Some(at),
+            ..self
+        }
+    }
+
+    /// It with the range met in practice.
+    #[must_use]
+    pub const fn typical(self, low: f64, high: f64) -> Parameter {
+        Parameter {
+            typical: (low, high),
+            ..self
+        }
+    }
+
+    /// It with its physically possible range.
+    #[must_use]
+    pub const fn bounds(self, low: f64, high: f64) -> Parameter {
+        Parameter {
+            bounds: (low, high),
+            ..self
+        }
+    }
+
+    /// It with the values to start a fit from.
+    #[must_use]
+    pub const fn starts(self, starts: &'static [f64]) -> Parameter {
+        Parameter { starts, ..self }
+    }
+}
+
 /// Another effect that looks alike.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Confusion {
@@ -124,6 +184,9 @@ pub struct EffectInfo {
     /// What it takes to be a candidate.
     #[serde(skip)]
     pub needs: Needs,
+    /// What it is at a joint that slides.
+    #[serde(skip)]
+    pub on_slide: OnSlide,
     /// Its values.
     pub parameters: &'static [Parameter],
     /// What a log shows.

@@ -1,12 +1,12 @@
 //! Load friction: what the gear transmits presses its teeth together.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// k |tau_m - tau_e|, with motor torque tau_m and outside torque tau_e.
 #[derive(Debug)]
 pub struct LoadFriction;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "load_friction",
     title: "load-dependent friction of the gear",
     aliases: &[
@@ -20,16 +20,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::DrivenJoint,
     needs: Needs::GearLoad,
+    on_slide: OnSlide::Same,
     law: "friction = factor * gear load, against the motion",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "friction over the torque the gear transmits",
-        off: Some(0.0),
-        typical: (0.02, 0.3),
-        bounds: (0.0, 2.0),
-        starts: &[0.05, 0.2],
-    }],
+    parameters: &[
+        Parameter::of("factor", "friction over the torque the gear transmits")
+            .off(0.0)
+            .typical(0.02, 0.3)
+            .bounds(0.0, 2.0)
+            .starts(&[0.05, 0.2]),
+    ],
     looks_like: "the resistance grows where the arm is held level and falls where it hangs; a \
      heavier load sticks harder",
     confused_with: &[
@@ -47,15 +46,7 @@ static INFO: EffectInfo = EffectInfo {
      Simulation of Servo Actuators, arXiv:2410.08650, model M3",
 };
 
-impl Effect for LoadFriction {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for LoadFriction {
     fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
         values[0] * at.gear_load_nm
     }

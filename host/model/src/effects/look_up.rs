@@ -6,31 +6,30 @@ use super::{EFFECTS, Effect, EffectInfo, expression};
 #[derive(Debug, Clone, PartialEq)]
 pub enum NameMatch {
     /// This effect, and no other, is called so.
-    One(&'static dyn Effect),
+    One(Effect),
     /// Each of these is called so, as the friction laws are by `friction`.
-    Several(Vec<&'static dyn Effect>),
+    Several(Vec<Effect>),
     /// None is called so; these speak of it in title, aliases or law, or are spelled alike.
-    Similar(Vec<&'static dyn Effect>),
+    Similar(Vec<Effect>),
 }
 
 /// The effects called `name`, whatever its case, hyphens and blanks (`BackEMF`, `dead band`): by
 /// id, else by title or alias, those that model files have defined included.
 pub fn look_up(name: &str) -> NameMatch {
-    let all: Vec<&'static dyn Effect> = EFFECTS
+    let all: Vec<Effect> = EFFECTS
         .iter()
         .copied()
         .chain(expression::defined())
         .collect();
     let wanted = squeezed(name);
-    let of_id = |effect: &&&'static dyn Effect| {
+    let of_id = |effect: &&Effect| {
         let id = effect.info().id;
         id == name || squeezed(id) == wanted
     };
     if let Some(effect) = all.iter().find(of_id) {
         return NameMatch::One(*effect);
     }
-    let called =
-        |effect: &&'static dyn Effect| names(effect.info()).any(|alias| squeezed(alias) == wanted);
+    let called = |effect: &Effect| names(effect.info()).any(|alias| squeezed(alias) == wanted);
     let called: Vec<_> = all.iter().copied().filter(called).collect();
     match called.as_slice() {
         [] => NameMatch::Similar(similar(name, &all)),
@@ -46,12 +45,12 @@ fn names(info: &EffectInfo) -> impl Iterator<Item = &'static str> {
 
 /// Effects whose names hold all the words of `name`; where there is none, those whose laws do;
 /// where there is none, those whose name is spelled most like it.
-fn similar(name: &str, all: &[&'static dyn Effect]) -> Vec<&'static dyn Effect> {
+fn similar(name: &str, all: &[Effect]) -> Vec<Effect> {
     let of_names = |info: &EffectInfo| names(info).collect::<Vec<_>>().join(" ");
     let of_law = |info: &EffectInfo| info.law.to_string();
     let wanted = words(name);
     for text in [&of_names as &dyn Fn(&EffectInfo) -> String, &of_law] {
-        let holds = |effect: &&'static dyn Effect| {
+        let holds = |effect: &Effect| {
             let there = words(&text(effect.info()));
             !wanted.is_empty() && wanted.iter().all(|word| there.contains(word))
         };
@@ -60,7 +59,7 @@ fn similar(name: &str, all: &[&'static dyn Effect]) -> Vec<&'static dyn Effect> 
             return found;
         }
     }
-    let spelled = |effect: &&'static dyn Effect| {
+    let spelled = |effect: &Effect| {
         let info = effect.info();
         let names = std::iter::once(info.id).chain(names(info));
         names.map(squeezed).collect::<Vec<_>>()
@@ -73,7 +72,7 @@ fn similar(name: &str, all: &[&'static dyn Effect]) -> Vec<&'static dyn Effect> 
     let Some(near) = near.min_by_key(slips) else {
         return Vec::new();
     };
-    let so_called = |effect: &&'static dyn Effect| spelled(effect).contains(&near);
+    let so_called = |effect: &Effect| spelled(effect).contains(&near);
     all.iter().copied().filter(so_called).collect()
 }
 
@@ -102,7 +101,7 @@ fn words(text: &str) -> Vec<String> {
 }
 
 /// A line for each effect: its id and its title.
-pub fn listed(effects: &[&'static dyn Effect]) -> Vec<String> {
+pub fn listed(effects: &[Effect]) -> Vec<String> {
     let infos = || effects.iter().map(|effect| effect.info());
     let width = infos().map(|info| info.id.len()).max().unwrap_or_default();
     infos()

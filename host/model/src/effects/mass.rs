@@ -1,6 +1,6 @@
 //! Mass: the link is heavier or lighter than in the model.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Rig, Scope, Site, ValueBehind};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site, ValueBehind};
 
 /// m + dm at the same centre of mass, with the inertia about it in the same proportion.
 ///
@@ -12,7 +12,7 @@ pub struct Mass;
 /// Smallest share of the mass that is left; a chain without inertia cannot be solved.
 const LEAST_SHARE: f64 = 0.01;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "mass",
     title: "mass or payload",
     aliases: &[
@@ -25,16 +25,16 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Body,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "mass + added_kg; the inertia about the centre of mass grows in the same proportion",
-    parameters: &[Parameter {
-        key: "added_kg",
-        unit: "kg",
-        meaning: "mass missing in the model; below zero: too much in it",
-        off: Some(0.0),
-        typical: (-0.1, 0.3),
-        bounds: (-1.0, 5.0),
-        starts: &[0.05, -0.05],
-    }],
+    parameters: &[Parameter::of(
+        "added_kg",
+        "mass missing in the model; below zero: too much in it",
+    )
+    .off(0.0)
+    .typical(-0.1, 0.3)
+    .bounds(-1.0, 5.0)
+    .starts(&[0.05, -0.05])],
     looks_like: "gravity and inertia are wrong by the same share: the arm holds at another duty, \
      but swings freely with the right period",
     confused_with: &[
@@ -51,15 +51,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "An, Atkeson, Hollerbach, Model-Based Control of a Robot Manipulator (1988)",
 };
 
-impl Effect for Mass {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for Mass {
     fn value_behind(&self) -> Option<ValueBehind> {
         Some(ValueBehind::LinkMass)
     }

@@ -1,13 +1,13 @@
 //! Friction over position: gears, cables and bearings run heavier at some angles than at others.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// A table of three entries: 0 at the model's zero, two values at +-span, straight lines between
 /// them, and constant beyond.
 #[derive(Debug)]
 pub struct PositionFriction;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "position_friction",
     title: "friction that changes with the angle",
     aliases: &[
@@ -20,36 +20,24 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = below_nm * min(-q / span_rad, 1) for q < 0, above_nm * min(q / span_rad, 1) \
      for q > 0",
     parameters: &[
-        Parameter {
-            key: "below_nm",
-            unit: "N m",
-            meaning: "what is added at -span_rad and beyond",
-            off: Some(0.0),
-            typical: (0.0, 0.06),
-            bounds: (-5.0, 5.0),
-            starts: &[0.02, 0.004],
-        },
-        Parameter {
-            key: "above_nm",
-            unit: "N m",
-            meaning: "what is added at +span_rad and beyond",
-            off: Some(0.0),
-            typical: (0.0, 0.06),
-            bounds: (-5.0, 5.0),
-            starts: &[0.01],
-        },
-        Parameter {
-            key: "span_rad",
-            unit: "rad",
-            meaning: "angle from which on it grows no more",
-            off: None,
-            typical: (0.3, 1.5),
-            bounds: (0.05, 6.3),
-            starts: &[0.6],
-        },
+        Parameter::of("below_nm", "what is added at -span_rad and beyond")
+            .off(0.0)
+            .typical(0.0, 0.06)
+            .bounds(-5.0, 5.0)
+            .starts(&[0.02, 0.004]),
+        Parameter::of("above_nm", "what is added at +span_rad and beyond")
+            .off(0.0)
+            .typical(0.0, 0.06)
+            .bounds(-5.0, 5.0)
+            .starts(&[0.01]),
+        Parameter::of("span_rad", "angle from which on it grows no more")
+            .typical(0.3, 1.5)
+            .bounds(0.05, 6.3)
+            .starts(&[0.6]),
     ],
     looks_like: "the loop over angle is wide at some angles and narrow at others, at every speed \
      and load",
@@ -69,46 +57,25 @@ static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction = below_n * min(-q / span_m, 1) for q < 0, above_n * min(q / span_m, 1) for \
      q > 0",
     parameters: &[
-        Parameter {
-            key: "below_n",
-            unit: "N",
-            meaning: "what is added at -span_m and beyond",
-            off: Some(0.0),
-            typical: (0.0, 5.0),
-            bounds: (-1000.0, 1000.0),
-            starts: &[0.3, 0.05],
-        },
-        Parameter {
-            key: "above_n",
-            unit: "N",
-            meaning: "what is added at +span_m and beyond",
-            off: Some(0.0),
-            typical: (0.0, 5.0),
-            bounds: (-1000.0, 1000.0),
-            starts: &[0.1],
-        },
-        Parameter {
-            key: "span_m",
-            unit: "m",
-            meaning: "displacement from which on it grows no more",
-            off: None,
-            typical: (0.05, 0.5),
-            bounds: (0.001, 10.0),
-            starts: &[0.2],
-        },
+        Parameter::of("below_n", "what is added at -span_m and beyond")
+            .off(0.0)
+            .typical(0.0, 5.0)
+            .bounds(-1000.0, 1000.0)
+            .starts(&[0.3, 0.05]),
+        Parameter::of("above_n", "what is added at +span_m and beyond")
+            .off(0.0)
+            .typical(0.0, 5.0)
+            .bounds(-1000.0, 1000.0)
+            .starts(&[0.1]),
+        Parameter::of("span_m", "displacement from which on it grows no more")
+            .typical(0.05, 0.5)
+            .bounds(0.001, 10.0)
+            .starts(&[0.2]),
     ],
     ..INFO
 };
 
-impl Effect for PositionFriction {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for PositionFriction {
     fn difference(&self) -> f64 {
         5e-3
     }

@@ -2,7 +2,7 @@
 
 use super::StepState;
 use super::{
-    AtRest, Effect, EffectInfo, JointState, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+    AtRest, EffectInfo, JointState, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
 };
 
 /// Dahl's law: -k z, dz/dq = 1 - (k z / f) sgn(dq). It remembers the deflection z and the angle at
@@ -11,7 +11,7 @@ use super::{
 #[derive(Debug)]
 pub struct PreSliding;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "pre_sliding",
     title: "pre-sliding friction",
     aliases: &[
@@ -28,26 +28,18 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -stiffness_nm_rad * z, dz/dq = 1 - stiffness_nm_rad * z / torque_nm * sgn(dq)",
     parameters: &[
-        Parameter {
-            key: "torque_nm",
-            unit: "N m",
-            meaning: "friction once it slides",
-            off: Some(0.0),
-            typical: (0.005, 0.1),
-            bounds: (0.0, 5.0),
-            starts: &[0.02, 0.06],
-        },
-        Parameter {
-            key: "stiffness_nm_rad",
-            unit: "N m/rad",
-            meaning: "torque per angle before it slides",
-            off: None,
-            typical: (0.1, 5.0),
-            bounds: (0.01, 500.0),
-            starts: &[1.0, 0.3],
-        },
+        Parameter::of("torque_nm", "friction once it slides")
+            .off(0.0)
+            .typical(0.005, 0.1)
+            .bounds(0.0, 5.0)
+            .starts(&[0.02, 0.06]),
+        Parameter::of("stiffness_nm_rad", "torque per angle before it slides")
+            .typical(0.1, 5.0)
+            .bounds(0.01, 500.0)
+            .starts(&[1.0, 0.3]),
     ],
     looks_like: "small motions are sprung and come back; after each reversal friction builds up \
      over a fixed angle instead of at once",
@@ -67,24 +59,15 @@ static INFO: EffectInfo = EffectInfo {
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = -stiffness_n_m * z, dz/dq = 1 - stiffness_n_m * z / force_n * sgn(dq)",
     parameters: &[
-        Parameter {
-            key: "force_n",
-            unit: "N",
-            meaning: "friction once it slides",
-            off: Some(0.0),
-            typical: (0.05, 10.0),
-            bounds: (0.0, 1000.0),
-            starts: &[0.5, 5.0],
-        },
-        Parameter {
-            key: "stiffness_n_m",
-            unit: "N/m",
-            meaning: "force per displacement before it slides",
-            off: None,
-            typical: (10.0, 10000.0),
-            bounds: (0.1, 1e6),
-            starts: &[300.0, 3000.0],
-        },
+        Parameter::of("force_n", "friction once it slides")
+            .off(0.0)
+            .typical(0.05, 10.0)
+            .bounds(0.0, 1000.0)
+            .starts(&[0.5, 5.0]),
+        Parameter::of("stiffness_n_m", "force per displacement before it slides")
+            .typical(10.0, 10000.0)
+            .bounds(0.1, 1e6)
+            .starts(&[300.0, 3000.0]),
     ],
     ..INFO
 };
@@ -92,15 +75,7 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 /// Speed, rad/s (m/s), well above which a joint that begins in motion is taken to slide.
 const SLIDES_AT: f64 = 0.05;
 
-impl Effect for PreSliding {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for PreSliding {
     fn difference(&self) -> f64 {
         5e-3
     }

@@ -4,8 +4,8 @@
 //! the measure of how much is left to explain.
 
 use super::{
-    DriveState, Effect, EffectInfo, Encoded, JointState, Needs, Parameter, Rig, Scope, SenseMemory,
-    Site,
+    DriveState, Effect, EffectInfo, Encoded, JointState, Law, Needs, OnSlide, Parameter, Rig,
+    Scope, SenseMemory, Site,
 };
 
 /// Which variable a probe bumps on; stored as its index in a probe's second value.
@@ -95,34 +95,34 @@ impl ProbeVariable {
     }
 
     /// The probe whose hook serves this variable.
-    pub fn probe(self) -> &'static dyn Effect {
+    pub fn probe(self) -> Effect {
         match self {
-            ProbeVariable::Supply | ProbeVariable::BackEmf => &DRIVE_PROBE,
-            ProbeVariable::Delay => &TIMING_PROBE,
-            ProbeVariable::Inertia | ProbeVariable::Mass | ProbeVariable::Tilt => &BODY_PROBE,
-            ProbeVariable::Reading => &ENCODER_PROBE,
-            ProbeVariable::ReadingLag | ProbeVariable::ReadingBacklash => &SENSOR_PROBE,
-            _ => &JOINT_PROBE,
+            ProbeVariable::Supply | ProbeVariable::BackEmf => DRIVE_PROBE,
+            ProbeVariable::Delay => TIMING_PROBE,
+            ProbeVariable::Inertia | ProbeVariable::Mass | ProbeVariable::Tilt => BODY_PROBE,
+            ProbeVariable::Reading => ENCODER_PROBE,
+            ProbeVariable::ReadingLag | ProbeVariable::ReadingBacklash => SENSOR_PROBE,
+            _ => JOINT_PROBE,
         }
     }
 }
 
 /// A free-form term at one site; values are amplitude, variable, centre, width.
 #[derive(Debug)]
-pub struct Probe {
-    info: &'static EffectInfo,
-}
+struct Probe;
 
-pub(super) static TIMING_PROBE: Probe = probe(&const { info("timing_probe", Site::Timing) });
-pub(super) static DRIVE_PROBE: Probe = probe(&const { info("drive_probe", Site::Drive) });
-pub(super) static JOINT_PROBE: Probe = probe(&const { info("joint_probe", Site::Joint) });
-pub(super) static BODY_PROBE: Probe = probe(&const { info("body_probe", Site::Body) });
-pub(super) static ENCODER_PROBE: Probe = probe(&const { info("encoder_probe", Site::Encoder) });
-pub(super) static SENSOR_PROBE: Probe = probe(&const { info("sensor_probe", Site::Sensor) });
-
-const fn probe(info: &'static EffectInfo) -> Probe {
-    Probe { info }
-}
+pub(super) static TIMING_PROBE: Effect =
+    Effect::of(&Probe, &const { info("timing_probe", Site::Timing) });
+pub(super) static DRIVE_PROBE: Effect =
+    Effect::of(&Probe, &const { info("drive_probe", Site::Drive) });
+pub(super) static JOINT_PROBE: Effect =
+    Effect::of(&Probe, &const { info("joint_probe", Site::Joint) });
+pub(super) static BODY_PROBE: Effect =
+    Effect::of(&Probe, &const { info("body_probe", Site::Body) });
+pub(super) static ENCODER_PROBE: Effect =
+    Effect::of(&Probe, &const { info("encoder_probe", Site::Encoder) });
+pub(super) static SENSOR_PROBE: Effect =
+    Effect::of(&Probe, &const { info("sensor_probe", Site::Sensor) });
 
 const fn info(id: &'static str, site: Site) -> EffectInfo {
     EffectInfo {
@@ -132,6 +132,7 @@ const fn info(id: &'static str, site: Site) -> EffectInfo {
         site,
         scope: Scope::AnyJoint,
         needs: Needs::Nothing,
+        on_slide: OnSlide::Same,
         law: "amplitude * bump((variable - centre) / width)",
         parameters: PARAMETERS,
         looks_like: "whatever is left",
@@ -169,15 +170,7 @@ fn bump(x: f64, values: &[f64]) -> f64 {
     (1.0 - ((x - values[2]) / values[3]).abs()).max(0.0)
 }
 
-impl Effect for Probe {
-    fn info(&self) -> &'static EffectInfo {
-        self.info
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(self.info)
-    }
-
+impl Law for Probe {
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0].max(0.0)
     }

@@ -1,12 +1,12 @@
 //! Rate bias: a gyro reads a rate at rest.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// w + b.
 #[derive(Debug)]
 pub struct RateBias;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "rate_bias",
     title: "bias of the rate sensor",
     aliases: &[
@@ -19,16 +19,13 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "reading = d(q)/dt + bias_rad_s",
-    parameters: &[Parameter {
-        key: "bias_rad_s",
-        unit: "rad/s",
-        meaning: "reading at rest",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-5.0, 5.0),
-        starts: &[0.02, -0.02],
-    }],
+    parameters: &[Parameter::of("bias_rad_s", "reading at rest")
+        .off(0.0)
+        .typical(-0.05, 0.05)
+        .bounds(-5.0, 5.0)
+        .starts(&[0.02, -0.02])],
     looks_like: "a constant error of the rate, at rest, too; the angle that is integrated from it \
      drifts away",
     confused_with: &[
@@ -42,27 +39,15 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "reading = d(q)/dt + bias_m_s",
-    parameters: &[Parameter {
-        key: "bias_m_s",
-        unit: "m/s",
-        meaning: "reading at rest",
-        off: Some(0.0),
-        typical: (-0.02, 0.02),
-        bounds: (-5.0, 5.0),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of("bias_m_s", "reading at rest")
+        .off(0.0)
+        .typical(-0.02, 0.02)
+        .bounds(-5.0, 5.0)
+        .starts(&[0.01, -0.01])],
     ..INFO
 };
 
-impl Effect for RateBias {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for RateBias {
     fn rate_bias_rad_s(&self, values: &[f64]) -> f64 {
         values[0]
     }

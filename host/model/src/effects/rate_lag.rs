@@ -1,13 +1,13 @@
 //! Rate lag: the reading of a gyro or tachometer is low-pass filtered.
 
 use super::sensor_lag::filtered;
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// T y' + y = w, as `sensor_lag` filters an angle.
 #[derive(Debug)]
 pub struct RateLag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "rate_lag",
     title: "lag of the rate sensor",
     aliases: &[
@@ -22,16 +22,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::RateSensor,
+    on_slide: OnSlide::Never,
     law: "time_constant_s * d(reading)/dt + reading = d(q)/dt",
-    parameters: &[Parameter {
-        key: "time_constant_s",
-        unit: "s",
-        meaning: "time constant of the filter",
-        off: Some(0.0),
-        typical: (0.002, 0.05),
-        bounds: (0.0, 1.0),
-        starts: &[0.01, 0.04],
-    }],
+    parameters: &[
+        Parameter::of("time_constant_s", "time constant of the filter")
+            .off(0.0)
+            .typical(0.002, 0.05)
+            .bounds(0.0, 1.0)
+            .starts(&[0.01, 0.04]),
+    ],
     looks_like: "the rate trails in proportion to the acceleration and rounds off fast motion; a \
      steady rate, and the angle of the same joint, are read rightly",
     confused_with: &[
@@ -42,11 +41,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Ljung, System Identification, 2nd ed., section 4.2",
 };
 
-impl Effect for RateLag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
+impl Law for RateLag {
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
     }

@@ -1,12 +1,12 @@
 //! Rate scale: a gyro or tachometer reads a share of the rate.
 
-use super::{Effect, EffectInfo, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// s w.
 #[derive(Debug)]
 pub struct RateScale;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "rate_scale",
     title: "scale of the rate sensor",
     aliases: &[
@@ -20,16 +20,13 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Rate,
     scope: Scope::AnyJoint,
     needs: Needs::RateSensor,
+    on_slide: OnSlide::Never,
     law: "reading = factor * d(q)/dt",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "rate read over true rate",
-        off: Some(1.0),
-        typical: (0.95, 1.05),
-        bounds: (0.5, 2.0),
-        starts: &[0.98, 1.02],
-    }],
+    parameters: &[Parameter::of("factor", "rate read over true rate")
+        .off(1.0)
+        .typical(0.95, 1.05)
+        .bounds(0.5, 2.0)
+        .starts(&[0.98, 1.02])],
     looks_like: "an error of the rate in proportion to the rate, none at rest; the angle of the \
      same joint is read rightly",
     confused_with: &[
@@ -40,11 +37,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "IEEE Std 952-1997, section 5.3",
 };
 
-impl Effect for RateScale {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
+impl Law for RateScale {
     fn rate_scale(&self, values: &[f64]) -> f64 {
         values[0]
     }

@@ -1,13 +1,13 @@
 //! Sensor lag: the reading is low-pass filtered.
 
-use super::{Effect, EffectInfo, Encoded, Needs, Parameter, Scope, SenseMemory, Site};
+use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
 /// straight line over the step, or a rate along a parabola.
 #[derive(Debug)]
 pub struct SensorLag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "sensor_lag",
     title: "lag of the sensor",
     aliases: &[
@@ -22,16 +22,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "time_constant_s * d(reading)/dt + reading = q",
-    parameters: &[Parameter {
-        key: "time_constant_s",
-        unit: "s",
-        meaning: "time constant of the filter",
-        off: Some(0.0),
-        typical: (0.01, 0.1),
-        bounds: (0.0, 1.0),
-        starts: &[0.02, 0.08],
-    }],
+    parameters: &[
+        Parameter::of("time_constant_s", "time constant of the filter")
+            .off(0.0)
+            .typical(0.01, 0.1)
+            .bounds(0.0, 1.0)
+            .starts(&[0.02, 0.08]),
+    ],
     looks_like: "the reading trails in proportion to the speed and rounds off fast motion; a \
      resting arm is read rightly",
     confused_with: &[
@@ -48,15 +47,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Ljung, System Identification, 2nd ed., section 4.2",
 };
 
-impl Effect for SensorLag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for SensorLag {
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
     }

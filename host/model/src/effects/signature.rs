@@ -36,7 +36,7 @@ const VISIBLE_SHARE: f64 = 0.065;
 
 /// The signature of an effect at the far end of its typical range; where that is too small to be
 /// seen, at up to nine times as much.
-pub fn signature(effect: &dyn Effect) -> Signature {
+pub fn signature(effect: Effect) -> Signature {
     let drawn = |stretch| drawn_for(effect, shown_values(effect, stretch));
     let mut seen = drawn(1.0);
     for stretch in [3.0, 9.0] {
@@ -48,13 +48,13 @@ pub fn signature(effect: &dyn Effect) -> Signature {
 }
 
 /// Values at which the effect vanishes; the default for a shape parameter.
-pub fn off_values(effect: &dyn Effect) -> Vec<f64> {
+pub fn off_values(effect: Effect) -> Vec<f64> {
     let off = |parameter: &Parameter| parameter.off.unwrap_or(parameter.starts[0]);
     effect.info().parameters.iter().map(off).collect()
 }
 
 /// For each parameter the end of its typical range farther from off, `stretch` times as far.
-fn shown_values(effect: &dyn Effect, stretch: f64) -> Vec<f64> {
+fn shown_values(effect: Effect, stretch: f64) -> Vec<f64> {
     let shown = |parameter: &Parameter| {
         let (low, high) = parameter.typical;
         match parameter.off {
@@ -80,7 +80,7 @@ fn parted(signature: &Signature) -> f64 {
     if height > 0.0 { distance / height } else { 0.0 }
 }
 
-fn drawn_for(effect: &dyn Effect, values: Vec<f64>) -> Signature {
+fn drawn_for(effect: Effect, values: Vec<f64>) -> Signature {
     let off = off_values(effect);
     if effect.remembers() {
         let (x_label, y_label) = remembered::labels(effect.info().site);
@@ -118,11 +118,11 @@ fn over(range: &Range<f64>, y: impl Fn(f64) -> f64) -> Points {
 /// What to plot over what: labels of x and y, range of x, and y of the effect with its values at
 /// an x.
 type PlotLaw = (&'static str, &'static str, Range<f64>, Height);
-type Height = fn(&dyn Effect, &[f64], f64) -> f64;
+type Height = fn(Effect, &[f64], f64) -> f64;
 
 /// Each site has its plot; where a law may depend on more than one quantity, the law itself is
 /// asked.
-fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
+fn law(effect: Effect, values: &[f64], off: &[f64]) -> PlotLaw {
     let over_delay: Height = |e, v, time_s| f64::from(time_s >= e.delay_s(v));
     let over_supply: Height = |e, v, supply| drive(e, v, 1.0, 0.0, supply);
     let over_speed: Height = |e, v, speed| drive(e, v, 1.0, speed, 1.0);
@@ -185,7 +185,7 @@ fn law(effect: &dyn Effect, values: &[f64], off: &[f64]) -> PlotLaw {
     }
 }
 
-fn friction_law(effect: &dyn Effect, values: &[f64]) -> PlotLaw {
+fn friction_law(effect: Effect, values: &[f64]) -> PlotLaw {
     let by_gear: Height = |e, v, load_nm| friction(e, v, [0.0, 1.0], [load_nm, 0.0]);
     let by_bearing: Height = |e, v, load_n| friction(e, v, [0.0, 1.0], [0.0, load_n]);
     let by_speed: Height = |e, v, speed| friction(e, v, [0.0, speed], [0.0, 0.0]);
@@ -211,7 +211,7 @@ fn friction_law(effect: &dyn Effect, values: &[f64]) -> PlotLaw {
     }
 }
 
-fn drive(effect: &dyn Effect, values: &[f64], duty: f64, speed: f64, supply: f64) -> f64 {
+fn drive(effect: Effect, values: &[f64], duty: f64, speed: f64, supply: f64) -> f64 {
     let at = DriveState {
         speed_rad_s: speed,
         duty,
@@ -224,7 +224,7 @@ fn drive(effect: &dyn Effect, values: &[f64], duty: f64, speed: f64, supply: f64
 
 /// The hook's answer with the sign of the speed, so that what resists forwards is drawn upward.
 fn friction(
-    effect: &dyn Effect,
+    effect: Effect,
     values: &[f64],
     [angle_rad, speed]: [f64; 2],
     [gear_nm, bearing_n]: [f64; 2],
@@ -249,7 +249,7 @@ fn triangle(point: f64) -> f64 {
 }
 
 /// Two periods of the triangle, 2 s each, of which the second is drawn.
-fn reading(effect: &dyn Effect, values: &[f64]) -> Points {
+fn reading(effect: Effect, values: &[f64]) -> Points {
     let step_s = 2.0 / (POINTS - 1) as f64;
     let ago = effect.reading_offset_s(values).unwrap_or(0.0) / step_s;
     let mut memory = None;

@@ -1,13 +1,13 @@
 //! Slew limit: a servo's profile, or a driver's ramp, lets its input change no faster than so much.
 
 use super::StepState;
-use super::{AtRest, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// |d input / dt| <= r. It remembers the input that it has reached.
 #[derive(Debug)]
 pub struct SlewLimit;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "slew_limit",
     title: "slew limit of the drive",
     aliases: &[
@@ -20,16 +20,16 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Command,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "the input that is obeyed follows the one that arrives by at most rate_per_s a second",
-    parameters: &[Parameter {
-        key: "rate_per_s",
-        unit: "1/s",
-        meaning: "fastest change of the input: full duties a second, or goal in rad (m) a second",
-        off: Some(f64::INFINITY),
-        typical: (1.0, 20.0),
-        bounds: (0.01, 10000.0),
-        starts: &[5.0, 2.0, 15.0],
-    }],
+    parameters: &[Parameter::of(
+        "rate_per_s",
+        "fastest change of the input: full duties a second, or goal in rad (m) a second",
+    )
+    .off(f64::INFINITY)
+    .typical(1.0, 20.0)
+    .bounds(0.01, 10000.0)
+    .starts(&[5.0, 2.0, 15.0])],
     looks_like: "small changes of the input are obeyed at once, large steps arrive late and as a \
      ramp; the delay grows with the height of the step",
     confused_with: &[
@@ -42,15 +42,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "ROBOTIS e-Manual, XL330-M288, profile acceleration and profile velocity",
 };
 
-impl Effect for SlewLimit {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for SlewLimit {
     fn remembers(&self) -> bool {
         true
     }

@@ -1,12 +1,12 @@
 //! Speed limit: the back-EMF of the motor takes torque away as the joint turns.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// tau - tau_full w / w_0, with the no-load speed w_0.
 #[derive(Debug)]
 pub struct SpeedLimit;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "speed_limit",
     title: "speed limit by back-EMF",
     aliases: &[
@@ -22,16 +22,16 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque - full_torque * w / no_load_speed_rad_s, while energised",
-    parameters: &[Parameter {
-        key: "no_load_speed_rad_s",
-        unit: "rad/s",
-        meaning: "speed at which full duty leaves no torque",
-        off: Some(f64::INFINITY),
-        typical: (4.0, 12.0),
-        bounds: (0.5, 10000.0),
-        starts: &[8.0, 20.0],
-    }],
+    parameters: &[Parameter::of(
+        "no_load_speed_rad_s",
+        "speed at which full duty leaves no torque",
+    )
+    .off(f64::INFINITY)
+    .typical(4.0, 12.0)
+    .bounds(0.5, 10000.0)
+    .starts(&[8.0, 20.0])],
     looks_like: "at full duty the arm accelerates less the faster it turns; the residual torque is \
      linear in speed, but only while the drive is energised",
     confused_with: &[
@@ -52,27 +52,18 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force - full force * w / no_load_speed_m_s, while energised",
-    parameters: &[Parameter {
-        key: "no_load_speed_m_s",
-        unit: "m/s",
-        meaning: "speed at which full duty leaves no force",
-        off: Some(f64::INFINITY),
-        typical: (0.1, 5.0),
-        bounds: (0.005, 10000.0),
-        starts: &[1.0, 4.0],
-    }],
+    parameters: &[Parameter::of(
+        "no_load_speed_m_s",
+        "speed at which full duty leaves no force",
+    )
+    .off(f64::INFINITY)
+    .typical(0.1, 5.0)
+    .bounds(0.005, 10000.0)
+    .starts(&[1.0, 4.0])],
     ..INFO
 };
 
-impl Effect for SpeedLimit {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for SpeedLimit {
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm - at.full_torque_nm * at.speed_rad_s / values[0]
     }

@@ -1,6 +1,6 @@
 //! Stiction and Stribeck friction: more resistance at rest than in motion.
 
-use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
+use super::{EffectInfo, FrictionState, Law, Needs, OnSlide, Parameter, Scope, Site};
 
 /// tau_x exp(-|w| / w_s), on top of the sliding friction.
 ///
@@ -9,7 +9,7 @@ use super::{Effect, EffectInfo, FrictionState, Needs, Parameter, Scope, Site};
 #[derive(Debug)]
 pub struct Stribeck;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "stribeck",
     title: "stiction and Stribeck friction",
     aliases: &[
@@ -25,26 +25,21 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Friction,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "friction = excess_nm * exp(-|w| / speed_rad_s), against the motion",
     parameters: &[
-        Parameter {
-            key: "excess_nm",
-            unit: "N m",
-            meaning: "breakaway torque above the sliding friction",
-            off: Some(0.0),
-            typical: (0.005, 0.2),
-            bounds: (0.0, 10.0),
-            starts: &[0.02, 0.1],
-        },
-        Parameter {
-            key: "speed_rad_s",
-            unit: "rad/s",
-            meaning: "Stribeck speed, at which 37 % of the excess is left",
-            off: None,
-            typical: (0.05, 0.8),
-            bounds: (0.005, 10.0),
-            starts: &[0.15, 0.6],
-        },
+        Parameter::of("excess_nm", "breakaway torque above the sliding friction")
+            .off(0.0)
+            .typical(0.005, 0.2)
+            .bounds(0.0, 10.0)
+            .starts(&[0.02, 0.1]),
+        Parameter::of(
+            "speed_rad_s",
+            "Stribeck speed, at which 37 % of the excess is left",
+        )
+        .typical(0.05, 0.8)
+        .bounds(0.005, 10.0)
+        .starts(&[0.15, 0.6]),
     ],
     looks_like: "the arm sticks, then jumps; the residual torque is a spike at each reversal that \
      fades as the speed grows",
@@ -66,37 +61,23 @@ static INFO: EffectInfo = EffectInfo {
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "friction = excess_n * exp(-|w| / speed_m_s), against the motion",
     parameters: &[
-        Parameter {
-            key: "excess_n",
-            unit: "N",
-            meaning: "breakaway force above the sliding friction",
-            off: Some(0.0),
-            typical: (0.05, 10.0),
-            bounds: (0.0, 1000.0),
-            starts: &[0.5, 5.0],
-        },
-        Parameter {
-            key: "speed_m_s",
-            unit: "m/s",
-            meaning: "Stribeck speed, at which 37 % of the excess is left",
-            off: None,
-            typical: (0.005, 0.2),
-            bounds: (0.0005, 5.0),
-            starts: &[0.02, 0.1],
-        },
+        Parameter::of("excess_n", "breakaway force above the sliding friction")
+            .off(0.0)
+            .typical(0.05, 10.0)
+            .bounds(0.0, 1000.0)
+            .starts(&[0.5, 5.0]),
+        Parameter::of(
+            "speed_m_s",
+            "Stribeck speed, at which 37 % of the excess is left",
+        )
+        .typical(0.005, 0.2)
+        .bounds(0.0005, 5.0)
+        .starts(&[0.02, 0.1]),
     ],
     ..INFO
 };
 
-impl Effect for Stribeck {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for Stribeck {
     fn difference(&self) -> f64 {
         5e-3
     }

@@ -1,12 +1,12 @@
 //! Supply sag: the source gives way under the current the drive draws.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// tau (1 - d |u|).
 #[derive(Debug)]
 pub struct SupplySag;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "supply_sag",
     title: "supply sag",
     aliases: &[
@@ -20,16 +20,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "torque * (1 - drop_share * |u|)",
-    parameters: &[Parameter {
-        key: "drop_share",
-        unit: "1",
-        meaning: "share of the supply lost at full duty",
-        off: Some(0.0),
-        typical: (0.05, 0.35),
-        bounds: (0.0, 0.9),
-        starts: &[0.1, 0.25],
-    }],
+    parameters: &[
+        Parameter::of("drop_share", "share of the supply lost at full duty")
+            .off(0.0)
+            .typical(0.05, 0.35)
+            .bounds(0.0, 0.9)
+            .starts(&[0.1, 0.25]),
+    ],
     looks_like: "strong commands give less than their share of torque; the torque bends over duty, \
      alike in both directions",
     confused_with: &[
@@ -47,15 +46,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Horowitz, Hill, The Art of Electronics, 3rd ed., chapter 1 (source resistance)",
 };
 
-impl Effect for SupplySag {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for SupplySag {
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm * (1.0 - values[0] * at.duty.abs())
     }

@@ -1,28 +1,28 @@
 //! Supply sensitivity: the torque follows the volts.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// tau (1 + s (V / V_n - 1)).
 #[derive(Debug)]
 pub struct SupplySensitivity;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "supply_sensitivity",
     title: "torque depends on the supply",
     aliases: &["supply voltage", "battery voltage", "voltage dependence"],
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Supply,
+    on_slide: OnSlide::Same,
     law: "torque * (1 + sensitivity * (V / V_nominal - 1))",
-    parameters: &[Parameter {
-        key: "sensitivity",
-        unit: "1",
-        meaning: "relative change of torque over relative change of supply",
-        off: Some(0.0),
-        typical: (0.5, 1.2),
-        bounds: (0.0, 3.0),
-        starts: &[1.0, 0.6],
-    }],
+    parameters: &[Parameter::of(
+        "sensitivity",
+        "relative change of torque over relative change of supply",
+    )
+    .off(0.0)
+    .typical(0.5, 1.2)
+    .bounds(0.0, 3.0)
+    .starts(&[1.0, 0.6])],
     looks_like: "the same command gives more motion on a full battery; the residual follows the \
      logged volts",
     confused_with: &[
@@ -35,15 +35,7 @@ static INFO: EffectInfo = EffectInfo {
      (2009), chapter 5",
 };
 
-impl Effect for SupplySensitivity {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for SupplySensitivity {
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
         torque_nm * (1.0 + values[0] * (at.supply_ratio - 1.0))
     }

@@ -2,14 +2,14 @@
 
 use super::StepState;
 use super::{
-    AtRest, DriveState, Effect, EffectInfo, MemoryCell, Needs, Parameter, Scope, Site, Slope,
+    AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
 };
 
 /// tau / (1 + r x), T x' = u^2 - x. It remembers x, the warmth: 0 cold, 1 after long at full duty.
 #[derive(Debug)]
 pub struct ThermalDrift;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "thermal_drift",
     title: "thermal drift of the motor",
     aliases: &[
@@ -23,27 +23,25 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x = 0 where a log \
      begins",
     parameters: &[
-        Parameter {
-            key: "rise",
-            unit: "1",
-            meaning: "relative rise of the winding's resistance once warm from full duty",
-            off: Some(0.0),
-            typical: (0.5, 5.0),
-            bounds: (0.0, 300.0),
-            starts: &[3.0, 15.0],
-        },
-        Parameter {
-            key: "time_constant_s",
-            unit: "s",
-            meaning: "time in which the winding warms up by 63 %",
-            off: None,
-            typical: (5.0, 120.0),
-            bounds: (1.0, 3600.0),
-            starts: &[10.0, 40.0],
-        },
+        Parameter::of(
+            "rise",
+            "relative rise of the winding's resistance once warm from full duty",
+        )
+        .off(0.0)
+        .typical(0.5, 5.0)
+        .bounds(0.0, 300.0)
+        .starts(&[3.0, 15.0]),
+        Parameter::of(
+            "time_constant_s",
+            "time in which the winding warms up by 63 %",
+        )
+        .typical(5.0, 120.0)
+        .bounds(1.0, 3600.0)
+        .starts(&[10.0, 40.0]),
     ],
     looks_like: "the same command gives less torque the longer the log; cold again, it is as at \
      first",
@@ -57,15 +55,7 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Mellor, Roberts, Turner, IEE Proceedings B 138 (1991) 205, with one body",
 };
 
-impl Effect for ThermalDrift {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for ThermalDrift {
     fn remembers(&self) -> bool {
         true
     }

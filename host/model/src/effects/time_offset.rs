@@ -1,6 +1,6 @@
 //! Time offset: the column of a reading holds what the encoder read at another time.
 
-use super::{AtRest, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// y(t) = q(t - T), of either sign. The offset is one of the log: a loop that reads the encoder
 /// itself, in a servo or on a board, knows nothing of it.
@@ -10,7 +10,7 @@ pub struct TimeOffset;
 /// Largest offset, s, of either sign.
 const MOST_S: f64 = 0.1;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "time_offset",
     title: "time offset of the reading",
     aliases: &[
@@ -28,16 +28,16 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Sensor,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "reading(t) = q(t - offset_s)",
-    parameters: &[Parameter {
-        key: "offset_s",
-        unit: "s",
-        meaning: "age of the reading at the time of its row; below 0 it is taken after that time",
-        off: Some(0.0),
-        typical: (-0.02, 0.02),
-        bounds: (-MOST_S, MOST_S),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of(
+        "offset_s",
+        "age of the reading at the time of its row; below 0 it is taken after that time",
+    )
+    .off(0.0)
+    .typical(-0.02, 0.02)
+    .bounds(-MOST_S, MOST_S)
+    .starts(&[0.01, -0.01])],
     looks_like: "an error in proportion to the speed, in a free swing too; the whole motion of the \
      joint is early or late against the inputs and the other joints, its shape unchanged",
     confused_with: &[
@@ -52,19 +52,11 @@ static INFO: EffectInfo = EffectInfo {
     reference: "Furgale, Rehder, Siegwart, IROS 2013, 1280 (temporal calibration of sensors)",
 };
 
-impl Effect for TimeOffset {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for TimeOffset {
     /// The columns of one log need not be off by the same time, and a log whose readings are all
     /// late by the same time is one whose inputs act late: a `delay`.
-    fn is_of_servo(&self) -> bool {
-        false
+    fn comes_with_servo(&self) -> Option<bool> {
+        Some(false)
     }
 
     fn reading_offset_s(&self, values: &[f64]) -> Option<f64> {

@@ -1,12 +1,12 @@
 //! Torque offset: something pulls at the joint, always alike.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// A constant torque.
 #[derive(Debug)]
 pub struct TorqueOffset;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "torque_offset",
     title: "constant torque offset",
     aliases: &[
@@ -20,16 +20,13 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = offset_nm, at every angle and speed, whether the drive is on or off",
-    parameters: &[Parameter {
-        key: "offset_nm",
-        unit: "N m",
-        meaning: "torque on the joint",
-        off: Some(0.0),
-        typical: (-0.05, 0.05),
-        bounds: (-5.0, 5.0),
-        starts: &[0.01, -0.01],
-    }],
+    parameters: &[Parameter::of("offset_nm", "torque on the joint")
+        .off(0.0)
+        .typical(-0.05, 0.05)
+        .bounds(-5.0, 5.0)
+        .starts(&[0.01, -0.01])],
     looks_like: "the same error of torque everywhere: the joint rests beside where it should, and \
      goes one way more easily than the other",
     confused_with: &[
@@ -48,27 +45,15 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = offset_n, everywhere, whether the drive is on or off",
-    parameters: &[Parameter {
-        key: "offset_n",
-        unit: "N",
-        meaning: "force on the joint",
-        off: Some(0.0),
-        typical: (-5.0, 5.0),
-        bounds: (-1000.0, 1000.0),
-        starts: &[0.1, -0.1],
-    }],
+    parameters: &[Parameter::of("offset_n", "force on the joint")
+        .off(0.0)
+        .typical(-5.0, 5.0)
+        .bounds(-1000.0, 1000.0)
+        .starts(&[0.1, -0.1])],
     ..INFO
 };
 
-impl Effect for TorqueOffset {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for TorqueOffset {
     fn torque(&self, values: &[f64], _at: &JointState) -> f64 {
         values[0]
     }

@@ -1,12 +1,12 @@
 //! Torque saturation: the drive gives no more than a limit.
 
-use super::{AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, DriveState, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// max(-limit, min(limit, tau)).
 #[derive(Debug)]
 pub struct TorqueSaturation;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "torque_saturation",
     title: "torque saturation",
     aliases: &[
@@ -19,16 +19,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque clipped to -limit_nm..limit_nm",
-    parameters: &[Parameter {
-        key: "limit_nm",
-        unit: "N m",
-        meaning: "largest torque in either direction",
-        off: Some(f64::INFINITY),
-        typical: (0.5, 2.0),
-        bounds: (0.001, 10000.0),
-        starts: &[0.3, 1.0, 3.0, 0.1, 0.03],
-    }],
+    parameters: &[
+        Parameter::of("limit_nm", "largest torque in either direction")
+            .off(f64::INFINITY)
+            .typical(0.5, 2.0)
+            .bounds(0.001, 10000.0)
+            .starts(&[0.3, 1.0, 3.0, 0.1, 0.03]),
+    ],
     looks_like: "flat tops: beyond some command the arm answers no more; the residual torque is \
      zero below it",
     confused_with: &[
@@ -46,27 +45,17 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force clipped to -limit_n..limit_n",
-    parameters: &[Parameter {
-        key: "limit_n",
-        unit: "N",
-        meaning: "largest force in either direction",
-        off: Some(f64::INFINITY),
-        typical: (1.0, 100.0),
-        bounds: (0.001, 100000.0),
-        starts: &[3.0, 10.0, 30.0, 1.0, 0.3],
-    }],
+    parameters: &[
+        Parameter::of("limit_n", "largest force in either direction")
+            .off(f64::INFINITY)
+            .typical(1.0, 100.0)
+            .bounds(0.001, 100000.0)
+            .starts(&[3.0, 10.0, 30.0, 1.0, 0.3]),
+    ],
     ..INFO
 };
 
-impl Effect for TorqueSaturation {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
+impl Law for TorqueSaturation {
     fn drive(&self, values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
         torque_nm.clamp(-values[0], values[0])
     }

@@ -1,12 +1,13 @@
 //! Torque scale: the torque constant or the gear ratio differs from the data sheet.
 
 use super::{
-    AtRest, DriveState, Effect, EffectInfo, Needs, Parameter, Scope, Site, Slope, ValueBehind,
+    AtRest, DriveState, Effect, EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, Slope,
+    ValueBehind,
 };
 
 /// s tau.
 #[derive(Debug)]
-pub struct TorqueScale;
+struct TorqueScale;
 
 static INFO: EffectInfo = EffectInfo {
     id: "torque_scale",
@@ -22,16 +23,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Drive,
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Same,
     law: "factor * torque",
-    parameters: &[Parameter {
-        key: "factor",
-        unit: "1",
-        meaning: "torque that arrives over torque in the model",
-        off: Some(1.0),
-        typical: (0.7, 1.3),
-        bounds: (0.05, 10.0),
-        starts: &[0.85, 1.15],
-    }],
+    parameters: &[
+        Parameter::of("factor", "torque that arrives over torque in the model")
+            .off(1.0)
+            .typical(0.7, 1.3)
+            .bounds(0.05, 10.0)
+            .starts(&[0.85, 1.15]),
+    ],
     looks_like: "every response to the drive is too strong or too weak by one share, at every \
      speed and in both directions",
     confused_with: &[
@@ -48,15 +48,10 @@ static INFO: EffectInfo = EffectInfo {
      (2009), chapter 5",
 };
 
-impl Effect for TorqueScale {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
+/// The effect, by which readings of a drive's torque are tried.
+pub static TORQUE_SCALE: Effect = Effect::of(&TorqueScale, &INFO);
 
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&INFO)
-    }
-
+impl Law for TorqueScale {
     fn value_behind(&self) -> Option<ValueBehind> {
         Some(ValueBehind::StallTorque)
     }

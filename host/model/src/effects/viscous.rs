@@ -1,12 +1,12 @@
 //! Viscous friction: resistance in proportion to speed.
 
-use super::{AtRest, Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site, Slope};
+use super::{AtRest, EffectInfo, JointState, Law, Needs, OnSlide, Parameter, Scope, Site, Slope};
 
 /// -c w.
 #[derive(Debug)]
 pub struct Viscous;
 
-static INFO: EffectInfo = EffectInfo {
+pub(super) static INFO: EffectInfo = EffectInfo {
     id: "viscous",
     title: "viscous friction",
     aliases: &[
@@ -22,16 +22,15 @@ static INFO: EffectInfo = EffectInfo {
     site: Site::Joint,
     scope: Scope::AnyJoint,
     needs: Needs::Nothing,
+    on_slide: OnSlide::Own(&ON_SLIDE),
     law: "torque = -coefficient_nm_s_rad * w",
-    parameters: &[Parameter {
-        key: "coefficient_nm_s_rad",
-        unit: "N m s/rad",
-        meaning: "resistance per speed",
-        off: Some(0.0),
-        typical: (0.001, 0.1),
-        bounds: (0.0, 10.0),
-        starts: &[0.01, 0.05],
-    }],
+    parameters: &[
+        Parameter::of("coefficient_nm_s_rad", "resistance per speed")
+            .off(0.0)
+            .typical(0.001, 0.1)
+            .bounds(0.0, 10.0)
+            .starts(&[0.01, 0.05]),
+    ],
     looks_like: "the residual torque is a straight line over speed; a free swing shrinks by the \
      same share every period",
     confused_with: &[
@@ -50,29 +49,17 @@ static INFO: EffectInfo = EffectInfo {
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
     law: "force = -coefficient_n_s_m * w",
-    parameters: &[Parameter {
-        key: "coefficient_n_s_m",
-        unit: "N s/m",
-        meaning: "resistance per speed",
-        off: Some(0.0),
-        typical: (0.05, 20.0),
-        bounds: (0.0, 10000.0),
-        starts: &[0.5, 5.0],
-    }],
+    parameters: &[Parameter::of("coefficient_n_s_m", "resistance per speed")
+        .off(0.0)
+        .typical(0.05, 20.0)
+        .bounds(0.0, 10000.0)
+        .starts(&[0.5, 5.0])],
     ..INFO
 };
 
-impl Effect for Viscous {
-    fn info(&self) -> &'static EffectInfo {
-        &INFO
-    }
-
-    fn slide_info(&self) -> Option<&'static EffectInfo> {
-        Some(&ON_SLIDE)
-    }
-
-    fn is_of_servo(&self) -> bool {
-        true
+impl Law for Viscous {
+    fn comes_with_servo(&self) -> Option<bool> {
+        Some(true)
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {

@@ -40,12 +40,10 @@ pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
     let effect = choose(text, id, all.map(|effect| (effect.info().id, effect)))?;
     let joint = joint_of(text, effect.info(), joint)?;
     let axes = [Axis::Hinge, Axis::Slide].into_iter();
-    let keys = axes
-        .filter_map(|axis| effects::on_axis(effect, axis))
-        .flat_map(|effect| {
-            let parameters = effect.info().parameters.iter().enumerate();
-            parameters.map(move |(i, p)| (p.key, (effect, i)))
-        });
+    let keys = axes.filter_map(|axis| effect.on(axis)).flat_map(|effect| {
+        let parameters = effect.info().parameters.iter().enumerate();
+        parameters.map(move |(i, p)| (p.key, (effect, i)))
+    });
     let mut known: Vec<(&str, _)> = Vec::new();
     for (key, value) in keys {
         if known.iter().all(|(known, _)| *known != key) {

@@ -1,7 +1,7 @@
 //! A joint: whether it turns or slides, what drives it, and which effects can act on it.
 
 use crate::dynamics::SlideAxis;
-use crate::effects::{self, Axis, Effect, Scope};
+use crate::effects::{Axis, Effect, Scope};
 
 /// A joint: what drives it, and whether it turns or slides.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,11 +40,7 @@ impl Joint {
 
 /// An effect as it is at a joint, or at all driven ones; none where it cannot act, or where its
 /// values had different units at different joints.
-pub fn effect_on(
-    effect: &'static dyn Effect,
-    joint: Option<usize>,
-    joints: &[Joint],
-) -> Option<&'static dyn Effect> {
+pub fn effect_on(effect: Effect, joint: Option<usize>, joints: &[Joint]) -> Option<Effect> {
     if effect.info().scope == Scope::WholeRig {
         return Some(effect);
     }
@@ -57,9 +53,9 @@ pub fn effect_on(
         .enumerate()
         .filter(acts)
         .map(|(_, own)| own.axis());
-    let first = effects::on_axis(effect, axes.next()?)?;
+    let first = effect.on(axes.next()?)?;
     let same = |axis| {
-        let other = effects::on_axis(effect, axis);
+        let other = effect.on(axis);
         other.is_some_and(|other| std::ptr::eq(other.info(), first.info()))
     };
     axes.all(same).then_some(first)

@@ -63,7 +63,7 @@ pub struct Model {
     /// Physical effects beyond the rigid chain and its ideal drives.
     pub effects: Vec<EffectInstance>,
     /// Effects that the file defines by an expression, whether they act or are candidates.
-    pub laws: Vec<&'static dyn Effect>,
+    pub laws: Vec<Effect>,
     /// Base parameters to refit along with every candidate effect.
     pub free: Vec<ParameterPath>,
     /// Values that a fit keeps from low to high, within what is possible: the user knows so much.
@@ -130,7 +130,7 @@ pub struct Link {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectInstance {
     /// Which effect.
-    pub effect: &'static dyn Effect,
+    pub effect: Effect,
     /// Joint index from 0; `None` acts on the whole rig, and on every driven joint if the effect is
     /// one of joints.
     pub joint: Option<usize>,
@@ -139,7 +139,7 @@ pub struct EffectInstance {
 }
 
 /// An effect and its joint, by index from 0: `coulomb@2`, `delay@all`.
-pub fn named_at(effect: &dyn Effect, joint: Option<usize>) -> String {
+pub fn named_at(effect: Effect, joint: Option<usize>) -> String {
     let id = effect.info().id;
     match joint {
         Some(joint) => format!("{id}@{}", joint + 1),
@@ -171,7 +171,7 @@ impl EffectInstance {
     pub fn rigid(&self) -> Option<EffectInstance> {
         let mut gear = effects::Gear::RIGID;
         self.effect.gear(&self.values, &mut gear);
-        let effect = effects::on_axis(effects::named("armature")?, self.effect.axis())?;
+        let effect = effects::named("armature")?.on(self.effect.axis())?;
         (gear != effects::Gear::RIGID).then_some(EffectInstance {
             effect,
             joint: self.joint,

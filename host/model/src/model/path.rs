@@ -2,7 +2,6 @@
 //! `coulomb@1.torque_nm`.
 
 use super::field::{JointField, LinkField, POSITIVE};
-use super::suggest::split_unit;
 use super::{EffectInstance, Model};
 use crate::effects::{self, Axis, Effect};
 use std::fmt;
@@ -47,9 +46,9 @@ impl ParameterPath {
     }
 
     /// Address of a value of an effect at a joint; `None` as [`EffectInstance`] has it.
-    pub fn at(effect: &'static dyn Effect, joint: Option<usize>, parameter: usize) -> Self {
-        let key = |effect: &dyn Effect| effect.info().parameters.get(parameter).map(|p| p.key);
-        let axis = match effects::on_axis(effect, Axis::Hinge) {
+    pub fn at(effect: Effect, joint: Option<usize>, parameter: usize) -> Self {
+        let key = |effect: Effect| effect.info().parameters.get(parameter).map(|p| p.key);
+        let axis = match effect.on(Axis::Hinge) {
             Some(hinge) if key(hinge) == key(effect) => Axis::Hinge,
             _ => effect.axis(),
         };
@@ -142,7 +141,7 @@ impl ParameterPath {
     pub fn unit(&self) -> &'static str {
         match self.parameter() {
             Some(parameter) => parameter.unit,
-            None => split_unit(self.key()).map_or("", |(_, unit)| unit),
+            None => effects::split_unit(self.key()).map_or("", |(_, unit)| unit),
         }
     }
 
@@ -166,7 +165,7 @@ impl ParameterPath {
         else {
             return None;
         };
-        let effect = effects::on_axis(effects::named(id)?, axis)?;
+        let effect = effects::named(id)?.on(axis)?;
         effect.info().parameters.get(parameter)
     }
 }

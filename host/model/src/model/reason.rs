@@ -197,7 +197,7 @@ use ModelReason::*;
 
 impl ModelReason {
     /// Why the effect cannot act on this joint, if it cannot.
-    pub fn unsuited(effect: &dyn Effect, index: usize, joint: &Joint) -> Option<ModelReason> {
+    pub fn unsuited(effect: Effect, index: usize, joint: &Joint) -> Option<ModelReason> {
         let wanted = match (effect.info().scope, joint.drive.is_driven()) {
             (Scope::DrivenJoint, false) => "driven",
             (Scope::PassiveJoint, true) => "passive",

@@ -1,7 +1,8 @@
 //! Why a TOML file is refused: the data, its sentence, and the remedy.
 
 use super::limits::Limits;
-use super::suggest::{split_unit, suggest};
+use super::suggest::suggest;
+use crate::effects::split_unit;
 use crate::error::Reason;
 use std::borrow::Cow;
 use std::fmt;

@@ -11,7 +11,7 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
     /// The effect.
-    pub effect: &'static dyn Effect,
+    pub effect: Effect,
     /// Joint index from 0; `None` for the whole rig, or for all driven joints if the effect is one
     /// of joints.
     pub joint: Option<usize>,
@@ -130,7 +130,7 @@ pub enum CandidateError {
         /// The name.
         name: String,
         /// Effects that speak of it, or that are spelled alike.
-        similar: Vec<&'static dyn Effect>,
+        similar: Vec<Effect>,
     },
     /// Several effects are called so.
     #[error("`{name}` may be any of {} effects", called.len())]
@@ -138,7 +138,7 @@ pub enum CandidateError {
         /// The name.
         name: String,
         /// Those that are called so.
-        called: Vec<&'static dyn Effect>,
+        called: Vec<Effect>,
     },
     /// The effect acts on the whole rig, and a joint was named.
     #[error("`{id}` acts on the whole rig, not on one joint")]
@@ -231,7 +231,7 @@ impl From<CandidateError> for Error {
 /// # Errors
 /// [`CandidateError::UnknownEffect`] with those that are like it,
 /// [`CandidateError::SeveralEffects`] with those that are called so.
-pub fn effect_named(name: &str) -> Result<&'static dyn Effect, CandidateError> {
+pub fn effect_named(name: &str) -> Result<Effect, CandidateError> {
     let owned = || name.to_string();
     match look_up(name) {
         NameMatch::One(effect) => Ok(effect),
@@ -257,11 +257,7 @@ pub fn effect_ids(names: &[String]) -> Result<Vec<String>, CandidateError> {
     ids.collect()
 }
 
-fn joint(
-    effect: &dyn Effect,
-    at: Option<&str>,
-    model: &Model,
-) -> Result<Option<usize>, CandidateError> {
+fn joint(effect: Effect, at: Option<&str>, model: &Model) -> Result<Option<usize>, CandidateError> {
     let (id, scope, count) = (effect.info().id, effect.info().scope, model.link_count());
     let joint = match (scope, at) {
         (Scope::WholeRig, None) => return Ok(None),

@@ -9,7 +9,7 @@ const MOST_VALUES: usize = 4;
 /// An effect with its values, stored in place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ActiveEffect {
-    pub effect: &'static dyn Effect,
+    pub effect: Effect,
     values: [f64; MOST_VALUES],
     count: usize,
     /// Place of what it remembers, if it does.
@@ -94,7 +94,7 @@ impl JointPlan {
         self.follows_input && self.torque.is_empty() && self.friction.iter().all(constant)
     }
 
-    fn add_gear(&mut self, effect: &dyn Effect, values: &[f64]) {
+    fn add_gear(&mut self, effect: Effect, values: &[f64]) {
         effect.gear(values, &mut self.gear);
         self.coupling = Coupling::of(&self.gear);
     }
@@ -164,7 +164,7 @@ impl JointPlan {
             .insert(before.unwrap_or(self.sense.len()), active);
     }
 
-    pub fn add(&mut self, effect: &'static dyn Effect, values: &[f64]) {
+    pub fn add(&mut self, effect: Effect, values: &[f64]) {
         let mut active = ActiveEffect {
             effect,
             values: [0.0; MOST_VALUES],

@@ -4,7 +4,7 @@ use super::correction::{Correction, LogColumn};
 use super::plain_friction::left_by_friction;
 use super::rating::{ModelReading, Rating};
 use crate::diagnose::values::values_of;
-use crate::effects::TorqueScale;
+use crate::effects::TORQUE_SCALE;
 use crate::fitting::Candidate;
 use crate::model::{Drive, Model, ParameterPath, Unit};
 use crate::motion::Motion;
@@ -239,7 +239,7 @@ fn rated_alike(readings: [&ModelReading; 2], effort: Effort) -> [Rating; 2] {
 
 fn torque_scale(joint: usize) -> Candidate {
     Candidate {
-        effect: &TorqueScale,
+        effect: TORQUE_SCALE,
         joint: Some(joint),
     }
 }

@@ -1,6 +1,6 @@
 //! A user's law as an effect: a torque on the joint, given as an expression.
 
-use super::super::{AtRest, Effect, EffectInfo, JointState, Slope};
+use super::super::{AtRest, JointState, Law, Slope};
 use super::program::{Program, Slot};
 
 /// Most values of an effect.
@@ -13,15 +13,10 @@ const SMOOTH: f64 = 1e-3;
 /// A law of the user's.
 #[derive(Debug)]
 pub(super) struct ExpressionLaw {
-    pub info: &'static EffectInfo,
     pub program: Program,
 }
 
-impl Effect for ExpressionLaw {
-    fn info(&self) -> &'static EffectInfo {
-        self.info
-    }
-
+impl Law for ExpressionLaw {
     fn is_users(&self) -> bool {
         true
     }

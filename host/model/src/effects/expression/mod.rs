@@ -12,7 +12,7 @@ pub use law::MOST_VALUES;
 pub use reason::ExpressionReason;
 pub use syntax::{CONSTANTS, FUNCTIONS, Misplaced, VARIABLES};
 
-use super::{Effect, EffectInfo, JointState, Needs, Parameter, Scope, Site};
+use super::{Effect, EffectInfo, JointState, Needs, OnSlide, Parameter, Scope, Site};
 use law::ExpressionLaw;
 use program::Program;
 use std::sync::{LazyLock, RwLock};
@@ -57,7 +57,7 @@ pub enum DefinitionFault {
     Torque(Misplaced),
 }
 
-type ExpressionLaws = Vec<(LawDefinition, &'static ExpressionLaw)>;
+type ExpressionLaws = Vec<(LawDefinition, Effect)>;
 
 static LAWS: LazyLock<RwLock<ExpressionLaws>> = LazyLock::new(RwLock::default);
 
@@ -65,7 +65,7 @@ static LAWS: LazyLock<RwLock<ExpressionLaws>> = LazyLock::new(RwLock::default);
 ///
 /// # Errors
 /// Names that are taken, bounds without room, an expression that is no law.
-pub fn effect(definition: &LawDefinition) -> Result<&'static dyn Effect, DefinitionFault> {
+pub fn effect(definition: &LawDefinition) -> Result<Effect, DefinitionFault> {
     let mut laws = LAWS.write().unwrap_or_else(|broken| broken.into_inner());
     if let Some(index) = laws.iter().position(|(known, _)| known == definition) {
         // The last definition of a name is what the name alone stands for.
@@ -78,29 +78,25 @@ pub fn effect(definition: &LawDefinition) -> Result<&'static dyn Effect, Definit
         let reason = ExpressionReason::TooManyLaws { most: MOST_LAWS };
         return Err(DefinitionFault::Name(reason));
     }
-    let law: &'static ExpressionLaw = Box::leak(Box::new(compiled(definition)?));
-    laws.push((definition.clone(), law));
-    Ok(law)
+    let effect = compiled(definition)?;
+    laws.push((definition.clone(), effect));
+    Ok(effect)
 }
 
 /// The effect that was last defined by this name.
-pub(super) fn named(id: &str) -> Option<&'static dyn Effect> {
+pub(super) fn named(id: &str) -> Option<Effect> {
     let laws = LAWS.read().unwrap_or_else(|broken| broken.into_inner());
-    let found = laws.iter().rev().find(|(_, law)| law.info.id == id)?;
-    Some(found.1)
+    let mut effects = laws.iter().rev().map(|(_, effect)| *effect);
+    effects.find(|effect| effect.info().id == id)
 }
 
 /// The effects of all definitions so far.
-pub(crate) fn defined() -> Vec<&'static dyn Effect> {
+pub(crate) fn defined() -> Vec<Effect> {
     let laws = LAWS.read().unwrap_or_else(|broken| broken.into_inner());
-    let effects = laws
-        .iter()
-        .rev()
-        .map(|(_, law)| *law as &'static dyn Effect);
-    effects.collect()
+    laws.iter().rev().map(|(_, effect)| *effect).collect()
 }
 
-fn compiled(definition: &LawDefinition) -> Result<ExpressionLaw, DefinitionFault> {
+fn compiled(definition: &LawDefinition) -> Result<Effect, DefinitionFault> {
     names(definition)?;
     let keys: Vec<&str> = definition
         .parameters
@@ -111,10 +107,8 @@ fn compiled(definition: &LawDefinition) -> Result<ExpressionLaw, DefinitionFault
     let off: Vec<Option<f64>> = (0..keys.len())
         .map(|i| off(&program, definition, i))
         .collect();
-    Ok(ExpressionLaw {
-        info: info(definition, &off),
-        program,
-    })
+    let law = Box::leak(Box::new(ExpressionLaw { program }));
+    Ok(Effect::of(law, info(definition, &off)))
 }
 
 /// Judges names, bounds and starts.
@@ -218,6 +212,7 @@ fn info(definition: &LawDefinition, off: &[Option<f64>]) -> &'static EffectInfo 
         scope: Scope::AnyJoint,
         site: Site::Joint,
         needs: Needs::Nothing,
+        on_slide: OnSlide::Never,
         parameters: Box::leak(parameters.into_boxed_slice()),
         looks_like: "what its law says",
         confused_with: &[],

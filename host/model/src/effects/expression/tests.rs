@@ -60,10 +60,10 @@ fn laws_are_evaluated_as_in_mathematics() {
 fn equal_definitions_are_one_effect_and_the_last_of_a_name_counts() {
     let first = effect(&definition("c * q")).unwrap();
     let second = effect(&definition("c * w")).unwrap();
-    assert!(!std::ptr::addr_eq(first, second));
+    assert!(!std::ptr::addr_eq(&raw const *first, &raw const *second));
     assert!(std::ptr::addr_eq(
-        first,
-        effect(&definition("c * q")).unwrap()
+        &raw const *first,
+        &raw const *effect(&definition("c * q")).unwrap()
     ));
 }
 

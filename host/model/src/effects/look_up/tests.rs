@@ -1,6 +1,6 @@
 use super::*;
 
-fn ids(effects: &[&'static dyn Effect]) -> Vec<&'static str> {
+fn ids(effects: &[Effect]) -> Vec<&'static str> {
     effects.iter().map(|effect| effect.info().id).collect()
 }
 

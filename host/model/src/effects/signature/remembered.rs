@@ -13,7 +13,7 @@ pub(super) fn labels(site: Site) -> (&'static str, &'static str) {
 }
 
 /// The effect's curve with these values; `span_s` is how long it is looked at.
-pub(super) fn curve(effect: &dyn Effect, values: &[f64], span_s: f64) -> Points {
+pub(super) fn curve(effect: Effect, values: &[f64], span_s: f64) -> Points {
     let step_s = span_s / (POINTS - 1) as f64;
     let times = (0..POINTS).map(|index| index as f64 * step_s);
     let mut memory = effect.recall(values, &moved(0.0, 0.0));
@@ -33,7 +33,7 @@ pub(super) fn curve(effect: &dyn Effect, values: &[f64], span_s: f64) -> Points 
 
 /// How long to look at it: three times as long as the longest of its times, or as a ramp to full
 /// range takes.
-pub(super) fn span_s(effect: &dyn Effect, values: &[f64]) -> f64 {
+pub(super) fn span_s(effect: Effect, values: &[f64]) -> f64 {
     let parameters = effect.info().parameters.iter().zip(values);
     let times = parameters.filter_map(|(parameter, value)| match parameter.unit {
         "s" => Some(*value),
@@ -52,14 +52,14 @@ fn moved(input: f64, angle_rad: f64) -> StepState {
 }
 
 /// What is obeyed in a step of an input that has gone from 0 to 1.
-fn stepped(effect: &dyn Effect, values: &[f64], memory: &mut MemoryCell, step_s: f64) -> f64 {
+fn stepped(effect: Effect, values: &[f64], memory: &mut MemoryCell, step_s: f64) -> f64 {
     let obeyed = effect.obey(values, *memory, 1.0, step_s);
     effect.remember(values, memory, &moved(1.0, 0.0), step_s);
     obeyed
 }
 
 /// Torque of a step at full duty.
-fn driven(effect: &dyn Effect, values: &[f64], memory: &mut MemoryCell, step_s: f64) -> f64 {
+fn driven(effect: Effect, values: &[f64], memory: &mut MemoryCell, step_s: f64) -> f64 {
     let at = DriveState {
         speed_rad_s: 0.0,
         duty: 1.0,
@@ -73,7 +73,7 @@ fn driven(effect: &dyn Effect, values: &[f64], memory: &mut MemoryCell, step_s: 
 }
 
 /// The second of two periods of a triangle.
-fn to_and_fro(effect: &dyn Effect, values: &[f64], mut memory: MemoryCell) -> Points {
+fn to_and_fro(effect: Effect, values: &[f64], mut memory: MemoryCell) -> Points {
     let at = |index: usize| {
         let angle_rad = triangle(index as f64);
         let joint = JointState {

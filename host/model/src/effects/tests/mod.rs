@@ -11,23 +11,8 @@ mod infos;
 mod laws;
 mod off;
 mod sensors;
-
-/// Units and what a key of that unit ends in.
-const SUFFIXES: &[(&str, &str)] = &[
-    ("s", "_s"),
-    ("1/s", "_per_s"),
-    ("m", "_m"),
-    ("kg", "_kg"),
-    ("kg m^2", "_kg_m2"),
-    ("rad", "_rad"),
-    ("rad/s", "_rad_s"),
-    ("rad/s^2", "_rad_s2"),
-    ("N/m", "_n_m"),
-    ("N m", "_nm"),
-    ("N m/rad", "_nm_rad"),
-    ("N m s/rad", "_nm_s_rad"),
-    ("N m s^2/rad^2", "_nm_s2_rad2"),
-];
+mod slides;
+mod tables;
 
 fn infos() -> impl Iterator<Item = &'static EffectInfo> {
     EFFECTS.iter().map(|effect| effect.info())
@@ -37,7 +22,7 @@ fn parameters() -> impl Iterator<Item = (&'static str, &'static Parameter)> {
     infos().flat_map(|info| info.parameters.iter().map(|parameter| (info.id, parameter)))
 }
 
-fn effect(id: &str) -> &'static dyn Effect {
+fn effect(id: &str) -> Effect {
     named(id).unwrap()
 }
 

@@ -2,7 +2,7 @@
 
 use super::planar::{PlanarChain, PlanarLink};
 use super::tree::{Remark, TreeDrive};
-use crate::effects::{Axis, Parameter, named, on_axis};
+use crate::effects::{Axis, Parameter, named};
 use crate::error::{Error, Place, Result};
 use crate::model::field::POSITIVE;
 use crate::model::new_model::{LinkPlan, ModelPlan, model_toml};
@@ -200,7 +200,7 @@ fn write_effect(text: &mut String, index: usize, link: &mut PlanarLink, acting: 
         None => Axis::Hinge,
         Some(_) => Axis::Slide,
     };
-    let known = named(acting.kind).and_then(|effect| on_axis(effect, axis));
+    let known = named(acting.kind).and_then(|effect| effect.on(axis));
     let parameters: &[Parameter] = known.map_or(&[], |effect| effect.info().parameters);
     let (attribute, line) = acting.attribute;
     for (own, value) in parameters.iter().zip(acting.values) {

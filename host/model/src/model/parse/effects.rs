@@ -8,11 +8,7 @@ use crate::effects::{EFFECTS, Effect, Scope};
 use crate::error::Result;
 use crate::model::effect_on;
 
-pub(super) fn read(
-    root: &Table,
-    joints: &[Joint],
-    laws: &[&'static dyn Effect],
-) -> Result<Vec<EffectInstance>> {
+pub(super) fn read(root: &Table, joints: &[Joint], laws: &[Effect]) -> Result<Vec<EffectInstance>> {
     let mut effects: Vec<EffectInstance> = Vec::new();
     for table in root.tables("effect")? {
         let effect = effect(&table, joints, laws)?;
@@ -26,12 +22,12 @@ pub(super) fn read(
     Ok(effects)
 }
 
-fn effect(table: &Table, joints: &[Joint], laws: &[&'static dyn Effect]) -> Result<EffectInstance> {
+fn effect(table: &Table, joints: &[Joint], laws: &[Effect]) -> Result<EffectInstance> {
     let kinds = EFFECTS
         .iter()
         .chain(laws)
         .map(|effect| (effect.info().id, *effect));
-    let kinds: Vec<(&str, &'static dyn Effect)> = kinds.collect();
+    let kinds: Vec<(&str, Effect)> = kinds.collect();
     let effect = table.required("kind", table.choice("kind", &kinds)?)?;
     let joint = at(table, effect, joints)?;
     let id = effect.info().id;
@@ -57,7 +53,7 @@ fn effect(table: &Table, joints: &[Joint], laws: &[&'static dyn Effect]) -> Resu
 }
 
 /// The joint it acts on; none if it acts on the whole rig, or on `"all"` driven joints.
-fn at(table: &Table, effect: &dyn Effect, joints: &[Joint]) -> Result<Option<usize>> {
+fn at(table: &Table, effect: Effect, joints: &[Joint]) -> Result<Option<usize>> {
     if effect.info().scope == Scope::WholeRig {
         let id = effect.info().id;
         return if table.has("joint") {

@@ -6,8 +6,8 @@ use crate::effects::Effect;
 use crate::effects::expression::{DefinitionFault, LawDefinition, LawParameter, effect};
 use crate::error::Result;
 
-pub(super) fn read(root: &Table) -> Result<Vec<&'static dyn Effect>> {
-    let mut laws: Vec<&'static dyn Effect> = Vec::new();
+pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
+    let mut laws: Vec<Effect> = Vec::new();
     for table in root.tables("expression")? {
         let law = law(&table)?;
         let id = law.info().id;
@@ -19,7 +19,7 @@ pub(super) fn read(root: &Table) -> Result<Vec<&'static dyn Effect>> {
     Ok(laws)
 }
 
-fn law(table: &Table) -> Result<&'static dyn Effect> {
+fn law(table: &Table) -> Result<Effect> {
     table.only(&["name", "torque", "parameter"])?;
     let parameters = table.tables("parameter")?;
     let definition = LawDefinition {
