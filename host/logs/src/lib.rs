@@ -19,6 +19,8 @@ mod log_set;
 #[cfg(feature = "ros")]
 pub mod mcap_messages;
 mod merge;
+#[cfg(feature = "parquet")]
+mod quietly;
 mod raw;
 mod read;
 mod reading_limit;

@@ -10,6 +10,7 @@ mod leaf;
 mod pages;
 
 use super::{LogTable, MOST_CELLS, TableFile};
+use crate::quietly::quietly_caught;
 use bytes::Bytes;
 use column::{ParquetSource, columns};
 use leaf::leaves;
@@ -17,7 +18,6 @@ use pages::{CellsLeft, broken};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaDataReader;
 use rayon::prelude::*;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// At both ends of a file.
 const MAGIC: &[u8] = b"PAR1";
@@ -90,8 +90,7 @@ fn metadata(bytes: &[u8]) -> Result<&[u8], &'static str> {
 
 /// What the library reads; where bytes make it panic, they are broken.
 fn caught<T>(read: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, ParquetError> {
-    let read = catch_unwind(AssertUnwindSafe(read));
-    read.unwrap_or_else(|_| Err(broken("its values are not written as it says")))
+    quietly_caught(read).unwrap_or_else(|| Err(broken("its values are not written as it says")))
 }
 
 /// What is wrong, without the kind of error before it.
