@@ -53,6 +53,10 @@ impl Board for TestBoard {
         None
     }
 
+    fn wait(&mut self, us: u16) {
+        self.pass_us(us);
+    }
+
     fn bus_flush(&mut self) {}
 
     fn link_receive(&mut self) -> Option<u8> {

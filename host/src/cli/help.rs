@@ -127,7 +127,7 @@ mod tests {
         match id {
             "ts" | "delay" => "0.02",
             "pose" => "0.1",
-            "speeds" => "differences",
+            "speeds" => "difference",
             "without" => "coulomb",
             "rust" => "a.rs",
             "c" => "a.h",
