@@ -134,7 +134,7 @@ mod tests {
             "csv" => "a.csv",
             "state_space" => "a.json",
             "report" => "a.html",
-            "name" => "ARM",
+            "name" => "arm",
             _ => "0.5",
         }
     }
