@@ -16,7 +16,7 @@ use std::ops::Range;
 /// State at the first sample of a stretch: relative angles (joint 1 from hanging), rad, and speeds,
 /// rad/s. Where the log's latest column is late by some time, below 0 where all are early, the
 /// state is of so much before that sample; see
-/// [`Effect::reading_offset_s`](crate::effects::Effect::reading_offset_s).
+/// [`Law::reading_offset_s`](crate::effects::Law::reading_offset_s).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StartState {
     /// Per joint, rad.

@@ -102,8 +102,8 @@ pub const LISTED: &[ListedMutant] = &[
     logic(
         "PlanChunk taken while armed",
         "firmware/src/app/command.rs",
-        "Command::PlanChunk { offset, bytes } => match self.is_armed() {",
-        "Command::PlanChunk { offset, bytes } => match false {",
+        "Command::PlanChunk { offset, bytes } => {\n                if self.is_armed() {",
+        "Command::PlanChunk { offset, bytes } => {\n                if false {",
     ),
     logic(
         "another start value of CRC-16",
