@@ -62,7 +62,7 @@ const ROBOT_SEED: u64 = 2;
 /// Runs the loop.
 pub fn run(args: &DemoArgs, console: &Console) -> Result<ExitStatus> {
     let (name, seed, takes) = if args.robot {
-        ("robot", ROBOT_SEED, "two to four minutes")
+        ("robot", ROBOT_SEED, "one to four minutes")
     } else {
         ("bench", BENCH_SEED, "about half a minute")
     };
