@@ -103,8 +103,8 @@ impl HostBoard {
     }
 
     /// Commands take as long as on the chip, where simavr measured them: 10 us for a byte from the
-    /// PC, 8.8 ms to read the 1200 bytes of a plan; and by its instructions (50 cycles for 8 bytes of
-    /// which 950 are unused), 0.4 ms to look at the stack.
+    /// PC, 8.8 ms to read the 1200 bytes of a plan; and by its instructions (50 cycles for 8 bytes
+    /// of which 950 are unused), 0.4 ms to look at the stack.
     pub fn take_time(&mut self) {
         self.byte_ns = 10_000;
         self.eeprom_read_ns = 7_300;

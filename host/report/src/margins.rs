@@ -48,8 +48,8 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
     if is_low(&margins.inputs) || margins.sensors.as_ref().is_some_and(is_low) {
         let filter = design.estimator.as_ref();
         let remedy = if filter.is_some_and(|filter| filter.recovery == 0.0) {
-            "a filter takes margin, and --recovery 1 gives it back; or weigh the speeds less or the \
-             inputs more (--q, --r)"
+            "a filter takes margin, and --recovery 1 gives it back; or weigh the speeds less or \
+             the inputs more (--q, --r)"
         } else {
             "weigh the speeds less or the inputs more (--q, --r), or try --tune"
         };

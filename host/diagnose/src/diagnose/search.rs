@@ -382,6 +382,8 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
 #[cfg(test)]
 mod ended_tests;
 #[cfg(test)]
+mod merged_tests;
+#[cfg(test)]
 mod stated_tests;
 #[cfg(test)]
 pub(super) mod tests;

@@ -206,17 +206,21 @@ mod tests {
         set
     }
 
+    /// What an arm lacks, and the same with an idle effect.
+    fn part_and_whole(evaluator: &Evaluator) -> [Hypothesis; 2] {
+        let both = [&[0.02][..], &[0.001, 10.0, 0.0]];
+        [
+            fitted(evaluator, &["viscous"], [both[0]]),
+            fitted(evaluator, &["viscous", "cogging"], both),
+        ]
+    }
+
     /// Above the noise something else bends every candidate: a simpler set is taken if it leaves
     /// hardly more, and not if it leaves a quarter more.
     #[test]
     fn the_simpler_of_sets_that_leave_nearly_the_same_is_taken() {
         let evaluator = evaluator(1, &["viscous"]);
-        let viscous = fitted(&evaluator, &["viscous"], [&[0.02]]);
-        let both = fitted(
-            &evaluator,
-            &["viscous", "cogging"],
-            [&[0.02], &[0.001, 10.0, 0.0]],
-        );
+        let [viscous, both] = part_and_whole(&evaluator);
         let names = |times: f64| {
             let sets = [
                 leaving(&evaluator, viscous.clone(), times),
@@ -233,12 +237,7 @@ mod tests {
     #[test]
     fn of_a_set_the_part_that_does_as_well_is_taken() {
         let evaluator = evaluator(1, &["viscous"]);
-        let viscous = fitted(&evaluator, &["viscous"], [&[0.02]]);
-        let both = fitted(
-            &evaluator,
-            &["viscous", "cogging"],
-            [&[0.02], &[0.001, 10.0, 0.0]],
-        );
+        let [viscous, both] = part_and_whole(&evaluator);
         let names = |times: f64| {
             let part = leaving(&evaluator, viscous.clone(), times);
             let whole = leaving(&evaluator, both.clone(), 4.0);

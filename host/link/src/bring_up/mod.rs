@@ -80,7 +80,7 @@ fn number(said: &str) -> Option<f64> {
 
 /// Who answers for what the line cannot check.
 pub trait Person {
-    /// Whether it is as `instruction` wants it; none where nobody checked. What was said beside it
+    /// Whether it is as `instruction` wants it; none where it was not checked. What was said beside it
     /// is for the report.
     fn confirms(&mut self, title: &str, instruction: &str) -> Result<(Option<bool>, String)>;
     /// Whether this servo may get a tenth of its torque now.

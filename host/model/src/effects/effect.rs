@@ -12,8 +12,8 @@ pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
 /// A law by which joints depart from the rigid chain with ideal drives and sensors.
 ///
 /// It is one law for both kinds of joint: in rad and N m where the joint turns, in m and N where it
-/// slides. Every hook's default is identity; an effect overrides that of its site. `values` are in its
-/// parameters' order.
+/// slides. Every hook's default is identity; an effect overrides that of its site. `values` are in
+/// its parameters' order.
 pub trait Law: Sync + fmt::Debug {
     /// Whether a model file defines it: see [`super::expression`].
     fn is_users(&self) -> bool {

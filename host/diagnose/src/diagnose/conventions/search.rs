@@ -186,9 +186,9 @@ fn beats_a_wrong_value(
     trial.ratio() < BEATS * least
 }
 
-/// Whether a correction leaves less than plain friction at its joint does, which the model may lack,
-/// and less than no input at all. `rubbing` holds what they leave for the joints that were asked
-/// for.
+/// Whether a correction leaves less than plain friction at its joint does, which the model may
+/// lack, and less than no input at all. `rubbing` holds what they leave for the joints that were
+/// asked for.
 fn beats_friction(
     bench: &CorrectionTrial,
     trial: &Trial,

@@ -74,18 +74,20 @@ impl Evaluator<'_> {
         found.collect()
     }
 
-    /// The set with an effect that it has at every joint taken for the same at all of them, refitted
-    /// from the values it has: alike joints need no values of their own.
+    /// The set with an effect that it has at every joint taken for the same at all of them,
+    /// refitted from the values it has: alike joints need no values of their own.
     pub(super) fn merged(&self, whole: &Hypothesis) -> Vec<Hypothesis> {
         let at_all = self.candidates.iter().filter(|all| all.joint.is_none());
         let merged = at_all.filter_map(|all| {
-            let is_one = |other: &&Candidate| {
-                other.joint.is_some() && other.effect.info().id == all.effect.info().id
+            let at = |joint| Candidate {
+                joint: Some(joint),
+                ..*all
             };
-            let joints = self.candidates.iter().filter(is_one).count();
-            let own: Vec<Candidate> = whole.set.iter().filter(is_one).copied().collect();
-            (joints > 1 && own.len() == joints)
-                .then(|| whole.merging(&own, *all, &self.base, &self.search, FINISH))
+            let joints = (0..self.start.link_count()).map(at);
+            let each: Vec<Candidate> = joints.filter(|at| all.overlaps(*at, &self.start)).collect();
+            let is_had = each.iter().all(|at| whole.set.contains(at));
+            (each.len() > 1 && is_had)
+                .then(|| whole.merging(&each, *all, &self.base, &self.search, FINISH))
         });
         let mut merged: Vec<Hypothesis> = merged.collect();
         for hypothesis in &mut merged {
