@@ -112,6 +112,9 @@ fn text(demo: &RobotDemo) -> String {
     let named = match (demo.named, demo.verdict) {
         (true, _) => "The diagnosis named what was hidden.",
         (false, Verdict::Named) => "The diagnosis named something else.",
+        (false, Verdict::Ambiguous) => {
+            "The diagnosis leaves open what is missing: something else would do as well."
+        }
         (false, _) => "The diagnosis did not name all that was hidden.",
     };
     let (before, after) = (said(&demo.nominal), said(&demo.learned));

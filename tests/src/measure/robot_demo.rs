@@ -4,6 +4,7 @@
 use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand::deploy::rehearsal::BalanceAttempt;
+use handstand::diagnose::Verdict;
 use handstand::robot_demo::{RobotDemo, ScoredEffect, run as circle};
 use handstand_tests::measured::Measured;
 use serde_json::json;
@@ -97,7 +98,12 @@ fn line(demo: &RobotDemo) -> [String; 5] {
     let named = if demo.named {
         "yes".to_string()
     } else {
-        format!("NO: {}", demo.added.join(", "))
+        let open = if demo.verdict == Verdict::Ambiguous {
+            ", or something else"
+        } else {
+            ""
+        };
+        format!("NO: {}{open}", demo.added.join(", "))
     };
     [
         demo.seed.to_string(),

@@ -53,7 +53,8 @@ pub struct RobotDemo {
     pub added: Vec<String>,
     /// The values of the hidden effects.
     pub effects: Vec<ScoredEffect>,
-    /// Whether all of them were added, and no others.
+    /// Whether the verdict names all of them, and no others: not where it leaves open what is
+    /// missing.
     pub named: bool,
 }
 
@@ -114,7 +115,8 @@ pub fn run(seed: u64, dir: &Path, hear: &(dyn Fn(DemoStep) + Sync)) -> Result<Ro
         training: logs.training.iter().map(LogRequest::name).collect(),
         held_out: logs.held_out.iter().map(LogRequest::name).collect(),
         verdict: taught.diagnosis.verdict,
-        named: names_all(&robot.answer.effects, &taught.added),
+        named: taught.diagnosis.verdict == Verdict::Named
+            && are_all(&robot.answer.effects, &taught.added),
         effects: (robot.answer.effects.iter())
             .flat_map(|effect| ScoredEffect::of(effect, &model, &taught.diagnosis))
             .collect(),
@@ -147,7 +149,7 @@ fn attempt(robot: &HiddenRobot, model: &Model) -> Result<BalanceAttempt> {
 }
 
 /// Whether exactly the hidden effects were added, in whatever order.
-fn names_all(hidden: &[RobotEffect], added: &[String]) -> bool {
+fn are_all(hidden: &[RobotEffect], added: &[String]) -> bool {
     hidden.len() == added.len() && hidden.iter().all(|effect| added.contains(&effect.address))
 }
 
