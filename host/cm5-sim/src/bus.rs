@@ -10,6 +10,9 @@ use handstand_shared::dynamixel::timing::{BYTE_NS, PING_REPLY_NS, REPLY_NS, byte
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
 use std::collections::{BTreeMap, VecDeque};
 
+/// How often servos regulate and measure at least, ns.
+const MOST_STEP_NS: u64 = 1_000_000;
+
 /// Servos on one line.
 #[derive(Debug)]
 pub struct Bus {
@@ -24,6 +27,8 @@ pub struct Bus {
     heard_ns: VecDeque<u64>,
     line: VecDeque<(u64, u8)>,
     now_ns: u64,
+    /// Time from one regulation and measurement of the servos to the next, ns.
+    step_ns: u64,
     /// Ends of the broadcasts that switched torque off, ns: what a safety test looks for.
     pub torque_offs: Vec<u64>,
     /// End of the last packet to more than one servo that wrote to each address, ns.
@@ -55,6 +60,7 @@ impl Bus {
             heard_ns: VecDeque::new(),
             line: VecDeque::new(),
             now_ns: 0,
+            step_ns: MOST_STEP_NS,
             torque_offs: Vec::new(),
             written_ns: BTreeMap::new(),
             line_baud: 1_000_000,
@@ -83,6 +89,9 @@ impl Bus {
                 servo.free = false;
             }
         }
+        self.step_ns = MOST_STEP_NS
+            .min((robot.step_s() * 1e9).round() as u64)
+            .max(1);
         // Shafts are where its joints are from the beginning.
         robot.step(&mut self.servos, 0.0);
         self.robot = Some(robot);
@@ -95,17 +104,17 @@ impl Bus {
 
     /// Advance the servos' motors, and the robot, to `now_ns`.
     pub fn advance(&mut self, now_ns: u64) {
-        const STEP_NS: u64 = 1_000_000;
-        while self.now_ns + STEP_NS <= now_ns {
-            self.now_ns += STEP_NS;
+        let step_s = self.step_ns as f64 * 1e-9;
+        while self.now_ns + self.step_ns <= now_ns {
+            self.now_ns += self.step_ns;
             if let Some(robot) = &mut self.robot {
-                robot.step(&mut self.servos, STEP_NS as f64 * 1e-9);
+                robot.step(&mut self.servos, step_s);
             }
             for servo in &mut self.servos {
-                servo.step(STEP_NS as f64 * 1e-9);
+                servo.step(step_s);
             }
             for servo in &mut self.x.servos {
-                servo.step(self.now_ns, STEP_NS as f64 * 1e-9);
+                servo.step(self.now_ns, step_s);
             }
         }
     }

@@ -11,6 +11,10 @@ pub trait Plant: Debug + Send {
     /// Number of joints.
     fn joint_count(&self) -> usize;
 
+    /// Step of its integration, s. Where it is shorter than that of the servos, they regulate and
+    /// measure as often.
+    fn step_s(&self) -> f64;
+
     /// Delay of a joint's drive, s.
     fn delay_s(&self, joint: usize) -> f64;
 

@@ -135,6 +135,11 @@ impl Robot {
         self.driven.iter().flat_map(|driven| driven.ids.clone())
     }
 
+    /// Step of its plant's integration, s.
+    pub(crate) fn step_s(&self) -> f64 {
+        self.plant.step_s()
+    }
+
     /// Angular rate of the first link, rad/s, as a gyro on it measures it.
     pub fn rate_rad_s(&self) -> f64 {
         self.plant.speed_rad_s(0)

@@ -48,8 +48,10 @@ fn commands(demo: &RobotDemo, output: &Path) -> String {
          is recorded, and is upright for the last line:\n\
          handstand replay goals_a.csv --record a.csv --port PORT   # likewise b to e; then as above\n\
          handstand balance again.toml --port PORT\n\
-         Of the drops b, c and e take the free swing alone, `b.csv:FIRST-LAST`: the rows behind \
-         torque_on's fall to 0. The demonstration lets its robot move farther and faster than yours \
+         For c and e bolt 0.2 kg onto the feet, and write `# payload_kg = 0.2` above those logs and \
+         `# payload_kg = 0` above the others: so friction that grows with the load on the bar is told \
+         from friction that does not. Of the drops b, c and e take the free swing alone, \
+         `b.csv:FIRST-LAST`: the rows behind torque_on's fall to 0. The demonstration lets its robot move farther and faster than yours \
          should: {LIMIT_OPTIONS}.",
         fingerprint = demo.learned.fingerprint,
     )
@@ -67,7 +69,7 @@ fn words(step: &DemoStep) -> String {
         ),
         DemoStep::Recorded(logs) => format!(
             "\nHanging from its bar it was moved through the firmware (excite, replay): \
-             {} to learn from, {} to judge by.",
+             {} to learn from, {} to judge by. In c and e its feet carry 0.2 kg.",
             names(&logs.training),
             names(&logs.held_out)
         ),

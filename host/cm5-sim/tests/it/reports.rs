@@ -23,6 +23,10 @@ impl Plant for Clock {
         1
     }
 
+    fn step_s(&self) -> f64 {
+        1e-3
+    }
+
     fn delay_s(&self, _joint: usize) -> f64 {
         0.0
     }

@@ -18,6 +18,10 @@ impl Plant for Tell {
         1
     }
 
+    fn step_s(&self) -> f64 {
+        1e-3
+    }
+
     fn delay_s(&self, _joint: usize) -> f64 {
         0.0
     }

@@ -130,6 +130,10 @@ impl Plant for LivePlant {
         self.0.joint_count()
     }
 
+    fn step_s(&self) -> f64 {
+        self.0.step_s()
+    }
+
     fn delay_s(&self, joint: usize) -> f64 {
         self.0.delay_s(joint)
     }

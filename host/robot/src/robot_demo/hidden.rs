@@ -108,6 +108,23 @@ impl HiddenRobot {
             ..Model::parse(text, Path::new("true.toml"))?
         })
     }
+
+    /// The same with a known mass bolted onto the last link, where the model has its payload, kg.
+    ///
+    /// # Errors
+    /// As [`model`](Self::model).
+    pub fn carrying(&self, payload_kg: f64) -> Result<Model> {
+        let mut model = self.model()?;
+        let at_m = model.log.payload_at_m;
+        if let Some(last) = model.links.last_mut() {
+            let empty = last.clone();
+            last.mass_kg += payload_kg;
+            last.com_m = (empty.mass_kg * empty.com_m + payload_kg * at_m) / last.mass_kg;
+            last.inertia_kg_m2 += empty.mass_kg * (empty.com_m - last.com_m).powi(2)
+                + payload_kg * (at_m - last.com_m).powi(2);
+        }
+        Ok(model)
+    }
 }
 
 impl RobotEffect {

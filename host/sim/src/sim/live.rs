@@ -101,6 +101,11 @@ impl Live {
         }
     }
 
+    /// Longest step of the integration, s.
+    pub fn step_s(&self) -> f64 {
+        self.plant.step_s
+    }
+
     /// Number of joints.
     pub fn joint_count(&self) -> usize {
         self.inputs.len()
