@@ -51,7 +51,7 @@ pub use group_read::{GroupItem, group_read_bytes};
 pub use one_servo::{OneMode, OneServo};
 pub use port::{LineWriter, SerialLink, read_some};
 pub use protocol::Protocol;
-use protocol::emergency_packet;
+use protocol::{emergency_packet, outlasting_answers};
 #[cfg(unix)]
 pub use pty::Pty;
 pub use replay::Replay;

@@ -136,3 +136,8 @@ pub(super) fn emergency_packet(protocol: Protocol) -> Vec<u8> {
     let (address, data) = (item.address, &[0][..]);
     protocol.packet(one::BROADCAST, ServoRequest::Write { address, data })
 }
+
+/// Bytes of `FF`, no part of a servo's packet, for longer than any answer takes: 5 ms.
+pub(super) fn outlasting_answers(baud: u32) -> Vec<u8> {
+    vec![0xff; (baud / 10 / 200) as usize]
+}

@@ -1,7 +1,7 @@
 //! Communicate with servos: requests, replies in bounded time, retries.
 
 use super::port::{SerialLink, read_some};
-use super::protocol::{Protocol, ServoRequest, emergency_packet};
+use super::protocol::{Protocol, ServoRequest, emergency_packet, outlasting_answers};
 use super::reply::Reading;
 use super::servo_error::{ServoError, ServoResult};
 use super::servo_rows::Identity;
@@ -212,7 +212,8 @@ impl<L: SerialLink> Servos<L> {
         Ok(())
     }
 
-    /// Torque off, everywhere. Twice, for a broadcast is not answered.
+    /// Torque off, everywhere. Twice, for a broadcast is not answered, and what is asked before it
+    /// may be while the first is said.
     ///
     /// # Errors
     /// [`ServoError::Port`] only.
@@ -222,9 +223,10 @@ impl<L: SerialLink> Servos<L> {
             Some(protocol) => vec![protocol],
             None => vec![Protocol::One, Protocol::Two],
         };
-        for protocol in protocols.iter().cycle().take(2 * protocols.len()) {
-            self.link.send(&emergency_packet(*protocol))?;
-        }
+        let off: Vec<u8> = protocols.into_iter().flat_map(emergency_packet).collect();
+        let idle = outlasting_answers(self.link.baud());
+        self.link.send(&off)?;
+        self.link.send(&[idle, off].concat())?;
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! Requests over every kind of line.
 
 use super::*;
+use crate::protocol::ServoRequest;
 use crate::virtual_cm5::{AdapterPort, SimLink};
 use handstand_shared::control_table as table;
 use handstand_shared::dynamixel::ErrorBits;
@@ -66,6 +67,23 @@ fn an_echo_is_told_from_an_answer() {
     assert!(matches!(servos.ping(2), Err(ServoError::NoResponse { .. })));
     let mut plain = Servos::new(sim("ids=1"));
     assert!(!plain.echoes().unwrap());
+}
+
+/// A line that stalled passes a request and what follows on in one burst, so the answer meets it.
+#[test]
+fn torque_goes_off_behind_a_request_that_is_still_answered() {
+    for count in [1, 2, 8, 20, 50] {
+        let mut servos = Servos::new(sim("ids=1-2,delay=0"));
+        servos.set(1, table::TORQUE_ENABLE, 1).unwrap();
+        let request = ServoRequest::Read { address: 0, count };
+        let request = Protocol::One.packet(1, request);
+        servos.link().send(&request).unwrap();
+        servos.torque_off().unwrap();
+        servos.link().pause(Duration::from_millis(10));
+        servos.link().clear().unwrap();
+        let torque = servos.get(1, table::TORQUE_ENABLE).unwrap();
+        assert_eq!(torque, 0, "behind a request for {count} bytes");
+    }
 }
 
 #[test]

@@ -3,10 +3,11 @@
 use super::one_sample::{OddCodes, OneCodes};
 use super::reach::{GoalRange, one_held, one_may_reach};
 use super::sample::{RobotSample, ServoSample};
-use super::source::{EmergencyOff, SampleSource, outlasting_answers, send_twice};
+use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
 use crate::{
     OneServo, Protocol, SerialLink, ServoError, ServoResult, Servos, StatusError, emergency_packet,
+    outlasting_answers,
 };
 use handstand_shared::control_table::one::TORQUE_MODE;
 use handstand_shared::control_table::{

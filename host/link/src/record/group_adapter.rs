@@ -4,11 +4,11 @@ use super::group_sample::{HEALTH, STATE, angle_of, code_of, health, state};
 use super::reach::{GoalLimits, GoalRange, SLACK_RAD};
 use super::sample::{RobotSample, ServoSample};
 use super::servo_watch::{ServoWatch, may_begin, may_move, takes_positions};
-use super::source::{EmergencyOff, SampleSource, outlasting_answers, send_twice};
+use super::source::{EmergencyOff, SampleSource, send_twice};
 use crate::error::{Error, Result};
 use crate::{
     GroupItem, Protocol, Reading, SerialLink, ServoResult, Servos, emergency_packet,
-    group_read_bytes,
+    group_read_bytes, outlasting_answers,
 };
 use handstand_shared::control_table::models::ServoModel;
 use handstand_shared::control_table::x::*;

@@ -23,11 +23,6 @@ pub(super) fn send_twice(mut voice: LineWriter, idle: Vec<u8>, bytes: Vec<u8>) -
     })
 }
 
-/// Bytes of `FF`, no part of a servo's packet, for longer than any answer takes: 5 ms.
-pub(super) fn outlasting_answers(baud: u32) -> Vec<u8> {
-    vec![0xff; (baud / 10 / 200) as usize]
-}
-
 /// Servos that can be sampled, and moved.
 pub trait SampleSource {
     /// Sends goals, in the order of ids, if there are any; waits for the next sample. None: it did
