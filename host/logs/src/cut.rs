@@ -140,8 +140,9 @@ impl Cutter<'_> {
                 self.close()?;
             }
             Some(wrong) => {
-                for (field, reason) in wrong {
-                    (self.report)(reason.kind(), Error::refused(row.place(field), reason))?;
+                for found in wrong {
+                    let error = Error::refused(row.place(found.field), found.reason);
+                    (self.report)(found.kind, error)?;
                 }
                 // A sample out of order would spoil every difference after it; after a restart,
                 // that is one to the samples before.

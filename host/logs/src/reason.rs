@@ -293,16 +293,6 @@ impl LogReason {
             motion: motion.to_string(),
         }
     }
-
-    /// The kind of finding that a row makes which cannot follow the one before.
-    pub(super) fn kind(&self) -> &'static str {
-        match self {
-            TimeNotIncreasing { .. } => "time",
-            TimeJumps { .. } => "jump",
-            PayloadChanges { .. } => "payload",
-            _ => "turned",
-        }
-    }
 }
 
 impl Reason for LogReason {

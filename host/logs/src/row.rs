@@ -33,6 +33,16 @@ impl Fields {
     }
 }
 
+/// Why a row cannot follow the one before.
+pub(super) struct OutOfPlace {
+    /// The kind of finding that it is.
+    pub kind: &'static str,
+    /// The field that shows it.
+    pub field: usize,
+    /// What is said of it.
+    pub reason: LogReason,
+}
+
 /// One sample.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LogRow {
@@ -99,38 +109,42 @@ impl LogRow {
         }
     }
 
-    /// Why this row cannot follow `previous` within a motion, with the field that shows it; `None`
-    /// if a new motion begins with it: another segment, or a gap longer than `split_at_gap_s`.
+    /// Why this row cannot follow `previous` within a motion; `None` if a new motion begins with it: another segment, or a gap longer than `split_at_gap_s`.
     pub(super) fn follows(
         &self,
         previous: &Before,
         split_at_gap_s: Option<f64>,
-    ) -> Option<Vec<(usize, LogReason)>> {
+    ) -> Option<Vec<OutOfPlace>> {
         let (time_s, previous_s) = (self.time_s, previous.time_s);
         let split = split_at_gap_s.is_some_and(|gap_s| time_s - previous_s > gap_s);
         if self.segment.as_deref() != previous.segment || split {
             return None;
         }
         let mut wrong = Vec::new();
+        let mut say = |kind, field, reason| {
+            wrong.push(OutOfPlace {
+                kind,
+                field,
+                reason,
+            });
+        };
         if time_s <= previous_s {
             let reason = LogReason::TimeNotIncreasing { time_s, previous_s };
-            wrong.push((self.fields.time, reason));
+            say("time", self.fields.time, reason);
         }
         if time_s - previous_s > LONGEST_GAP_S {
-            wrong.push((
-                self.fields.time,
-                LogReason::TimeJumps { time_s, previous_s },
-            ));
+            let reason = LogReason::TimeJumps { time_s, previous_s };
+            say("jump", self.fields.time, reason);
         }
         if self.payload_kg != previous.payload_kg {
             let reason = LogReason::PayloadChanges {
                 payload_kg: self.payload_kg,
                 previous_kg: previous.payload_kg,
             };
-            wrong.push((self.fields.payload, reason));
+            say("payload", self.fields.payload, reason);
         }
         if self.turned != previous.turned {
-            wrong.push((self.fields.turned, LogReason::TurnedRound));
+            say("turned", self.fields.turned, LogReason::TurnedRound);
         }
         Some(wrong)
     }
