@@ -67,7 +67,7 @@ pub struct ScoredEffect {
     pub key: String,
     /// The truth.
     pub true_value: f64,
-    /// The estimate, where the effect was added; of a delay without the recording's own.
+    /// The estimate, where the effect was added.
     pub estimate: Option<f64>,
     /// The 95 % interval that the diagnosis gave, where it found the effect.
     pub interval: Option<[f64; 2]>,
