@@ -42,7 +42,6 @@ pub fn columns() -> LogColumns {
     }
 }
 
-/// A swing sampled at 100 Hz that follows its goal.
 /// A swing of one joint, sampled every 10 ms, its goal 20 ms ahead.
 pub fn motion(name: &str, samples: usize) -> Motion {
     let time_s: Vec<f64> = (0..samples).map(|i| i as f64 * 0.01).collect();

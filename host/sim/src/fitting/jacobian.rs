@@ -151,7 +151,7 @@ impl LevenbergMarquardt<'_> {
         let delta = |value: f64| match hidden.map(|hidden| (hidden.quantity, hidden.joint)) {
             None => step(unknown / joints, unknown % joints),
             // Towards the middle: beyond a flank is nothing.
-            Some((HiddenQuantity::Share { .. } | HiddenQuantity::Before, _)) => {
+            Some((HiddenQuantity::Share { .. } | HiddenQuantity::Before { .. }, _)) => {
                 -SHARE_DIFFERENCE.copysign(value)
             }
             Some((HiddenQuantity::Rate, joint)) => step(1, joint),

@@ -89,7 +89,8 @@ fn least_samples(model: &Model, motion: &Motion) -> usize {
     let plant = Plant::new(model, motion);
     let hidden = plant.hidden().iter();
     // What was told before the log began is unknown to its first window alone.
-    let hidden = hidden.filter(|unknown| unknown.quantity != HiddenQuantity::Before);
+    let hidden =
+        hidden.filter(|unknown| !matches!(unknown.quantity, HiddenQuantity::Before { .. }));
     (READINGS * 2 * model.link_count() + hidden.count()).div_ceil(signals.max(1))
 }
 

@@ -5,6 +5,7 @@ use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::normal::NormalEquations;
 use super::residual::{left_hidden, residuals};
+use super::told_before::begin_as_told;
 use super::window_start::{StartGuess, WindowStart};
 use crate::sim::HiddenUnknown;
 use nalgebra::DVector;
@@ -44,11 +45,9 @@ impl<'a> LevenbergMarquardt<'a> {
     pub fn new(mut fit: Fit, data: &'a FitProblem, mut guesses: Vec<StartGuess>) -> Self {
         let hidden = data.hidden(&fit.model);
         let unknowns = 3 * data.joints() + hidden.len();
-        if fit
-            .window_starts
-            .iter()
-            .any(|window_start| window_start.unknowns.len() != unknowns)
-        {
+        let is_new =
+            (fit.window_starts.iter()).any(|window_start| window_start.unknowns.len() != unknowns);
+        if is_new {
             // Of a model that hides something else.
             (fit.window_starts.iter_mut())
                 .for_each(|window_start| window_start.forget_hidden(data.joints()));
@@ -64,6 +63,9 @@ impl<'a> LevenbergMarquardt<'a> {
             }
             fit.residuals = residuals(&fit.model, data, &fit.window_starts);
             fit.simulations += 2;
+            if is_new {
+                begin_as_told(&mut fit, data, &hidden);
+            }
         }
         LevenbergMarquardt {
             fit,

@@ -29,13 +29,23 @@ const RATE: &str = "velocity = { column = \"w\", unit = \"rad/s\", resolution_ra
 /// What a model does from this angle, at these times, let go at rest: what it predicts goes into
 /// the angles, or into the rates where it has those alone, or a sensor of them.
 pub(super) fn swing(model: &Model, angle_rad: &[f64], time_s: Vec<f64>) -> Motion {
+    driven(model, angle_rad, time_s, vec![None; angle_rad.len()])
+}
+
+/// The same of drives with these inputs.
+pub(super) fn driven(
+    model: &Model,
+    angle_rad: &[f64],
+    time_s: Vec<f64>,
+    input: Vec<Option<Vec<f64>>>,
+) -> Motion {
     let joints = model.link_count();
     let gaps = vec![f64::NAN; time_s.len()];
     let mut motion = Motion {
         name: format!("from {angle_rad:?}"),
         position_rad: vec![gaps; joints],
         velocity_rad_s: vec![None; joints],
-        input: vec![None; joints],
+        input,
         time_s,
         ..Motion::default()
     };

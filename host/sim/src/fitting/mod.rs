@@ -50,6 +50,7 @@ mod staged;
 mod step;
 mod step_size;
 mod student;
+mod told_before;
 mod told_values;
 mod ways;
 mod window_start;

@@ -1,10 +1,10 @@
 //! Sensors of several effects, run in windows.
 
 use super::Horizon;
-use super::log_tests::{ANGLE, even, pendulum, swing};
+use super::log_tests::{ANGLE, driven, even, pendulum, swing};
 use crate::compare::compare;
 use crate::effects::named;
-use crate::model::{EffectInstance, Model};
+use crate::model::{Drive, EffectInstance, Model, Motor};
 use crate::motion::Motion;
 
 fn sensing(effects: [(&str, f64); 2]) -> Model {
@@ -67,5 +67,40 @@ fn a_log_that_begins_in_the_middle_of_a_motion_finds_what_is_hidden_there() {
         let motion = from_turn(&swing(&model, &[1.2], even(600, 100.0)));
         let rms_rad = rms_rad(&model, &motion, Horizon::Whole);
         assert!(rms_rad < 0.002, "{id}: {rms_rad} rad");
+    }
+}
+
+/// A servo that gets to its goals slowly, resting where its log begins with a goal elsewhere, or on
+/// its way.
+#[test]
+fn a_log_finds_how_far_a_slow_servo_had_got_before_it_began() {
+    let mut model = pendulum(ANGLE, 0.006);
+    let motor = Motor {
+        stall_torque_nm: 1.5,
+        no_load_speed_rad_s: 6.0,
+        nominal_supply_v: None,
+    };
+    model.joints[0].drive = Drive::Position {
+        motor,
+        gain_per_rad: 5.0,
+    };
+    model.effects.push(EffectInstance {
+        effect: named("slew_limit").unwrap(),
+        joint: Some(0),
+        values: vec![1.2],
+    });
+    let time_s = even(600, 100.0);
+    let goal = |t: &f64| match t {
+        ..0.5 => 0.0,
+        0.5..2.5 => 0.64,
+        2.5..4.0 => -0.3,
+        _ => 0.2,
+    };
+    let goals = vec![Some(time_s.iter().map(goal).collect())];
+    let motion = driven(&model, &[0.0], time_s, goals);
+    for first in [50, 70] {
+        let part = motion.part(first..motion.len());
+        let rms_rad = rms_rad(&model, &part, Horizon::Whole);
+        assert!(rms_rad < 0.001, "from row {first}: {rms_rad} rad");
     }
 }

@@ -108,7 +108,7 @@ impl StartGuess {
                     let deviation = (doubt(0) / scale).min(SHARE_DEVIATION);
                     (left.clamp(-1.0, 1.0), deviation, (-1.0, 1.0))
                 }
-                HiddenQuantity::Before => (0.0, BEFORE_DEVIATION, (-1.0, 1.0)),
+                HiddenQuantity::Before { .. } => (0.0, BEFORE_DEVIATION, (-1.0, 1.0)),
                 HiddenQuantity::Rate => {
                     let reach = REACH_DEVIATIONS * doubt(1);
                     let middle = left.clamp(-reach, reach);

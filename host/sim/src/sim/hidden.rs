@@ -1,6 +1,6 @@
 //! Unknowns of a stretch's beginning that no reading tells: where in its play a joint is and how
-//! fast it crosses it, how far dry friction is bent before it slides, what a late drive was told
-//! before the log begins.
+//! fast it crosses it, how far dry friction is bent before it slides, what a drive that is late, or
+//! gets on slowly, was told before the log begins.
 //!
 //! A stretch takes over what the one before came to remember. That is as wrong at its end as the
 //! errors of its start have grown by then, and in an unstable motion they grow fast. How far a gear
@@ -35,7 +35,10 @@ pub enum HiddenQuantity {
     Rate,
     /// By how much more than the first input of the log the one before it was, as a share of it:
     /// -1 where the log begins with the first command.
-    Before,
+    Before {
+        /// Whether the drive gets from that to its input slowly, not only late.
+        is_slow: bool,
+    },
 }
 
 /// Where it is remembered, by the cell there.
@@ -72,8 +75,9 @@ impl HiddenUnknown {
                     add(HiddenMemory::Effect(cell), share(scale));
                 }
             }
-            if plan.is_late {
-                add(HiddenMemory::Input, HiddenQuantity::Before);
+            let is_slow = plan.follows_slowly();
+            if plan.is_late || is_slow {
+                add(HiddenMemory::Input, HiddenQuantity::Before { is_slow });
             }
         }
         all
@@ -91,7 +95,7 @@ impl HiddenUnknown {
             HiddenQuantity::Share { scale } if scale > 0.0 => displacement / scale,
             HiddenQuantity::Share { .. } => 0.0,
             HiddenQuantity::Rate => rate,
-            HiddenQuantity::Before => 0.0,
+            HiddenQuantity::Before { .. } => 0.0,
         }
     }
 
@@ -100,14 +104,14 @@ impl HiddenUnknown {
         match self.quantity {
             HiddenQuantity::Share { scale } => at[0] = scale * value,
             HiddenQuantity::Rate => at[1] = value,
-            HiddenQuantity::Before => {}
+            HiddenQuantity::Before { .. } => {}
         }
     }
 }
 
 impl Plant {
-    /// What late drives were told before the log begins, as a share of its first input, with these
-    /// values of what is hidden, in the order of [`Plant::hidden`].
+    /// What drives were told before the log begins, as a share of its first input, with these values
+    /// of what is hidden, in the order of [`Plant::hidden`].
     pub(super) fn put_before(&self, values: &[f64], share: &mut [f64]) {
         share.fill(1.0);
         for (unknown, value) in self.hidden.iter().zip(values) {
@@ -177,6 +181,26 @@ impl SensorState {
 }
 
 impl EffectMemory {
+    /// Has commands been obeyed for long that were so much of the log's first input, by joint.
+    pub(super) fn obeyed_before(
+        &mut self,
+        plant: &Plant,
+        inputs: &[Option<Vec<f64>>],
+        share: &[f64],
+    ) {
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            let first = inputs[joint].as_ref().and_then(|input| input.first());
+            let (Some(first), true) = (first, plan.follows_slowly()) else {
+                continue;
+            };
+            let told = share[joint] * first;
+            for (e, cell) in plan.command.iter().filter_map(|e| Some((e, e.cell?))) {
+                let state = StepState::at_rest(0.0);
+                self.0[cell] = e.effect.displaced(e.values(), told, &state);
+            }
+        }
+    }
+
     /// Puts what is hidden in friction where the joints are at these angles, rad, in the
     /// order of [`Plant::hidden`].
     pub(super) fn put_hidden(&mut self, plant: &Plant, angle: &[f64], values: &[f64]) {

@@ -123,6 +123,11 @@ impl JointPlan {
             .filter_map(|e| Some((e, e.cell?)))
     }
 
+    /// Whether what the drive follows depends on what it was told before.
+    pub fn follows_slowly(&self) -> bool {
+        self.command.iter().any(|e| e.cell.is_some())
+    }
+
     /// Leaves those sensors that a rate is read through, where nothing else is read.
     pub fn keep_rate_sensors(&mut self) {
         self.sense

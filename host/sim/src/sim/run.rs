@@ -72,10 +72,14 @@ fn predicted<R: Rows>(
     cross_gap::<R>(plant, motion, stretch.start, memory);
     memory.sensors.put_hidden(plant, &hidden);
     let start = &memory.sensors.beside_slips(plant, start);
+    let is_first = stretch.start == 0 && memory.ended.is_none();
     let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
-    let effects = run.stepper.memory();
-    effects.put_hidden(plant, &start.angle_rad, &hidden);
+    (run.stepper.memory()).put_hidden(plant, &start.angle_rad, &hidden);
     plant.put_before(&hidden, &mut run.before);
+    if is_first {
+        let effects = run.stepper.memory();
+        effects.obeyed_before(plant, &motion.input, &run.before);
+    }
     if plant.has_offsets && samples > 0 {
         return run.record_offset(stretch, memory, readings);
     }
