@@ -10,8 +10,9 @@ use handstand_shared::dynamixel::timing::{BYTE_NS, PING_REPLY_NS, REPLY_NS, byte
 use handstand_shared::dynamixel::{BROADCAST, MAX_PACKET, Packet, Parser, Request, Status};
 use std::collections::{BTreeMap, VecDeque};
 
-/// How often servos regulate and measure at least, ns.
+/// Longest and shortest time from one regulation and measurement of servos to the next, ns.
 const MOST_STEP_NS: u64 = 1_000_000;
+const LEAST_STEP_NS: u64 = 50_000;
 
 /// Servos on one line.
 #[derive(Debug)]
@@ -89,9 +90,8 @@ impl Bus {
                 servo.free = false;
             }
         }
-        self.step_ns = MOST_STEP_NS
-            .min((robot.step_s() * 1e9).round() as u64)
-            .max(1);
+        let step_ns = (robot.step_s() * 1e9).round() as u64;
+        self.step_ns = step_ns.clamp(LEAST_STEP_NS, MOST_STEP_NS);
         // Shafts are where its joints are from the beginning.
         robot.step(&mut self.servos, 0.0);
         self.robot = Some(robot);

@@ -109,7 +109,8 @@ impl LogRow {
         }
     }
 
-    /// Why this row cannot follow `previous` within a motion; `None` if a new motion begins with it: another segment, or a gap longer than `split_at_gap_s`.
+    /// Why this row cannot follow `previous` within a motion; `None` if a new motion begins with
+    /// it: another segment, or a gap longer than `split_at_gap_s`.
     pub(super) fn follows(
         &self,
         previous: &Before,
