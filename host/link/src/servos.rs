@@ -225,8 +225,9 @@ impl<L: SerialLink> Servos<L> {
         };
         let off: Vec<u8> = protocols.into_iter().flat_map(emergency_packet).collect();
         let idle = outlasting_answers(self.link.baud());
-        self.link.send(&off)?;
-        self.link.send(&[idle, off].concat())?;
+        for bytes in [&off, &idle, &off] {
+            self.link.send(bytes)?;
+        }
         Ok(())
     }
 
