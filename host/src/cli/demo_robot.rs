@@ -8,7 +8,9 @@ use handstand::diagnose::Verdict;
 use handstand::log::LogRequest;
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
-use handstand::robot_demo::{DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run as circle};
+use handstand::robot_demo::{
+    DemoStep, LIMIT_OPTIONS, PAYLOAD_KG, RobotDemo, ScoredEffect, run as circle,
+};
 use handstand::{Error, Result};
 use std::path::Path;
 
@@ -48,11 +50,12 @@ fn commands(demo: &RobotDemo, output: &Path) -> String {
          is recorded, and is upright for the last line:\n\
          handstand replay goals_a.csv --record a.csv --port PORT   # likewise b to e; then as above\n\
          handstand balance again.toml --port PORT\n\
-         For c and e bolt 0.2 kg onto the feet, and write `# payload_kg = 0.2` above those logs and \
-         `# payload_kg = 0` above the others: so friction that grows with the load on the bar is told \
-         from friction that does not. Of the drops b, c and e take the free swing alone, \
-         `b.csv:FIRST-LAST`: the rows behind torque_on's fall to 0. The demonstration lets its robot move farther and faster than yours \
-         should: {LIMIT_OPTIONS}.",
+         For c and e bolt {PAYLOAD_KG} kg onto the feet, 0.184 m from the hip, and write \
+         `# payload_kg = {PAYLOAD_KG}` above those logs and `# payload_kg = 0` above the others: \
+         so friction that grows with the load on the bar is told from friction that does not. Of \
+         the drops b, c and e take the free swing alone, `b.csv:FIRST-LAST`: the rows behind \
+         torque_on's fall to 0. The demonstration lets its robot move farther and faster than \
+         yours should: {LIMIT_OPTIONS}.",
         fingerprint = demo.learned.fingerprint,
     )
 }
@@ -69,7 +72,7 @@ fn words(step: &DemoStep) -> String {
         ),
         DemoStep::Recorded(logs) => format!(
             "\nHanging from its bar it was moved through the firmware (excite, replay): \
-             {} to learn from, {} to judge by. In c and e its feet carry 0.2 kg.",
+             {} to learn from, {} to judge by. In c and e its feet carry {PAYLOAD_KG} kg.",
             names(&logs.training),
             names(&logs.held_out)
         ),

@@ -80,8 +80,8 @@ fn number(said: &str) -> Option<f64> {
 
 /// Who answers for what the line cannot check.
 pub trait Person {
-    /// Whether it is as `instruction` wants it; none where it was not checked. What was said beside it
-    /// is for the report.
+    /// Whether it is as `instruction` wants it; none where it was not checked. What was said beside
+    /// it is for the report.
     fn confirms(&mut self, title: &str, instruction: &str) -> Result<(Option<bool>, String)>;
     /// Whether this servo may get a tenth of its torque now.
     fn allows_torque(&mut self, id: u8) -> Result<bool>;

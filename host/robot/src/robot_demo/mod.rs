@@ -18,5 +18,5 @@ mod run;
 pub use hidden::{HiddenRobot, RobotAnswer, RobotEffect};
 pub use learning::Learned;
 pub use page::html;
-pub use recording::{MOTIONS, RecordedMotion};
+pub use recording::{MOTIONS, PAYLOAD_KG, RecordedMotion};
 pub use run::{DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run};

@@ -36,7 +36,7 @@ pub const MOTIONS: [RecordedMotion; 5] = [
     motion("e", ExcitationKind::Drop, [0.6, 0.4], PAYLOAD_KG, true),
 ];
 /// Known mass that some motions carry, kg; nominal.toml says where.
-const PAYLOAD_KG: f64 = 0.2;
+pub const PAYLOAD_KG: f64 = 0.2;
 /// Duration of each, s.
 const EACH_S: f64 = 6.5;
 /// Rows at the begin of a motion, and behind the moment at which torque goes off, that are left

@@ -110,8 +110,8 @@ impl HiddenUnknown {
 }
 
 impl Plant {
-    /// What drives were told before the log begins, as a share of its first input, with these values
-    /// of what is hidden, in the order of [`Plant::hidden`].
+    /// What drives were told before the log begins, as a share of its first input, with these
+    /// values of what is hidden, in the order of [`Plant::hidden`].
     pub(super) fn put_before(&self, values: &[f64], share: &mut [f64]) {
         share.fill(1.0);
         for (unknown, value) in self.hidden.iter().zip(values) {
