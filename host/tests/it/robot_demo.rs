@@ -8,7 +8,7 @@ use handstand::robot_demo::{HiddenRobot, LIMIT_OPTIONS, RobotAnswer, run};
 /// most of a minute. `cargo xtask robot-demo` runs ten.
 #[test]
 fn a_robot_that_falls_as_believed_stands_as_learned() {
-    const SEED: u64 = 406;
+    const SEED: u64 = 1;
     let folder = tempfile::tempdir().unwrap();
     let demo = run(SEED, folder.path(), &|_| {}).unwrap();
     assert!(!demo.nominal.stands, "{:?}", demo.nominal.end);
