@@ -34,6 +34,7 @@ pub struct Cm5 {
     buttons: Buttons,
     leds: Leds,
     reset_cause: ResetCause,
+    stack: stack::Look,
 }
 
 impl Cm5 {
@@ -45,7 +46,7 @@ impl Cm5 {
         port::charger_off(&registers);
         watchdog::start(&registers);
         let reset_cause = watchdog::take_reset_cause(&registers);
-        stack::paint();
+        let stack = stack::Look::paint();
         let (buttons, leds) = port::start(&registers);
         timer::start(&registers);
         usart::bus::start(&registers);
@@ -60,6 +61,7 @@ impl Cm5 {
             buttons,
             leds,
             reset_cause,
+            stack,
         }
     }
 }
@@ -70,7 +72,11 @@ impl Board for Cm5 {
     }
 
     fn tick_due(&mut self) -> bool {
-        timer::tick_due(&self.registers)
+        let is_due = timer::tick_due(&self.registers);
+        if !is_due {
+            self.stack.go_on();
+        }
+        is_due
     }
 
     fn feed_watchdog(&mut self) {
@@ -168,6 +174,6 @@ impl Board for Cm5 {
     }
 
     fn stack(&mut self) -> (u16, u16) {
-        stack::used_and_size()
+        self.stack.used_and_size()
     }
 }
