@@ -1,5 +1,5 @@
-//! The rigid planar chain: equations of motion by recursion in O(n), and in closed form; the tests
-//! hold them to each other.
+//! The rigid planar chain: equations of motion by recursion in O(n), and in closed form; and the
+//! tree in space, by recursion. The tests hold them to each other.
 
 mod articulated;
 mod chain;
@@ -12,6 +12,7 @@ mod link_motion;
 mod runge_kutta;
 mod sin_cos;
 mod slide_axis;
+mod spatial;
 
 pub use articulated::{FreeBase, Workspace};
 pub use chain::{Chain, ChainLink};
@@ -20,3 +21,4 @@ pub use equations::EquationsOfMotion;
 pub use lanes::{Lane, Lanes};
 pub use runge_kutta::{RungeKutta, runge_kutta};
 pub use slide_axis::SlideAxis;
+pub use spatial::{SpatialLink, SpatialTree, SpatialWorkspace};
