@@ -13,12 +13,15 @@ mod flash;
 pub const START_16: u16 = 0xffff;
 
 /// CRC-16 of 0xA2EB, most significant bit first, over `bytes`, going on from `crc`.
+#[cfg(not(target_arch = "avr"))]
 pub fn crc16(mut crc: u16, bytes: &[u8]) -> u16 {
     for byte in bytes {
         crc = byte16(crc, *byte);
     }
     crc
 }
+#[cfg(target_arch = "avr")]
+pub use flash::crc16;
 
 /// CRC-32 of IEEE 802.3 (as in zip and PNG) over `bytes`.
 pub fn crc32(bytes: &[u8]) -> u32 {
@@ -72,19 +75,9 @@ const TABLE_16: [u16; 256] = {
     table
 };
 
-#[cfg(target_arch = "avr")]
-use flash::word_16;
-
 #[cfg(not(target_arch = "avr"))]
-fn word_16(byte: u8) -> u16 {
-    TABLE_16[usize::from(byte)]
-}
-
-#[inline(always)]
 fn byte16(crc: u16, byte: u8) -> u16 {
-    // By bytes, for the AVR has no others.
-    let [high, low] = crc.to_be_bytes();
-    u16::from_be_bytes([low, 0]) ^ word_16(high ^ byte)
+    crc << 8 ^ TABLE_16[usize::from((crc >> 8) as u8 ^ byte)]
 }
 
 #[cfg_attr(not(target_arch = "avr"), allow(dead_code))]
