@@ -82,6 +82,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         guessed: false,
         links: vec![link; log.joints.len()],
         joints: vec![Joint::from(drive); log.joints.len()],
+        robot: None,
         effects: Vec::new(),
         laws: Vec::new(),
         free: Vec::new(),

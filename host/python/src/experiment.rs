@@ -93,7 +93,8 @@ pub fn next(
     let mut model = model.borrow().clone();
     let turning = model
         .inner
-        .hinges_only("proposed motions are for servos that turn");
+        .hinges_only("proposed motions are for servos that turn")
+        .and_then(|()| (model.inner).planar_only("motions are proposed for planar chains"));
     turning.map_err(exception)?;
     for effect in &without {
         effect_named(effect).map_err(exception)?;

@@ -12,16 +12,20 @@
 //! $ handstand import robot.urdf --joints shoulder elbow -o arm.toml
 //! ```
 //!
+//! With `--space` the model is the robot in space: all of its hinges and slides, but those held by
+//! `--lock gripper=0.3`. It names the robot's file, whose shape it keeps, and notes its SHA-256.
+//!
 //! Without `-o` the file's text goes to stdout. `--json` prints `format` (`urdf`, `mjcf`), `file`
 //! (or null), `text` (null where a file was written), `joints`, `not_carried` and `notes` (`part`,
 //! `name`, `line`, `why`).
 
 use super::{Console, ExitStatus, input};
 use handstand::Result;
-use handstand::model::import::{ImportPlan, import};
+use handstand::model::Model;
+use handstand::model::import::{ImportPlan, Locked, SpacePlan, import};
 use handstand::output::vacant;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Import a model from another simulator's file.
 #[derive(Debug, clap::Args)]
@@ -32,6 +36,12 @@ pub struct ImportArgs {
     /// Joints of the chain, from the base to the tip; the most hinges in a row without
     #[arg(long, num_args = 1.., value_name = "NAME")]
     joints: Vec<String>,
+    /// Take the robot in space, all of its joints, instead of a planar chain
+    #[arg(long, conflicts_with = "joints")]
+    space: bool,
+    /// Joint of a robot in space that is held, and where, rad or m
+    #[arg(long, num_args = 1.., value_name = "NAME=VALUE", value_parser = locked, requires = "space")]
+    lock: Vec<Locked>,
     /// Drive joints without an actuator by a torque; they are passive without
     #[arg(long)]
     driven: bool,
@@ -43,6 +53,34 @@ pub struct ImportArgs {
     force: bool,
 }
 
+/// `NAME=VALUE`.
+fn locked(text: &str) -> std::result::Result<Locked, String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("write NAME=VALUE, as gripper=0.3")?;
+    let value: f64 = value.parse().map_err(|_| format!("{value} is no number"))?;
+    if value.is_finite() {
+        Ok((name.to_string(), value))
+    } else {
+        Err("a joint is held at a finite number".into())
+    }
+}
+
+/// The robot's file as a model file beside `output` names it: relative where both are.
+fn seen_from(output: Option<&Path>, robot: &Path) -> String {
+    let folder = output.and_then(Path::parent).unwrap_or(Path::new(""));
+    if robot.is_absolute() || folder == Path::new("") {
+        return robot.display().to_string();
+    }
+    match robot.strip_prefix(folder) {
+        Ok(beside) => beside.display().to_string(),
+        Err(_) => std::path::absolute(robot).map_or_else(
+            |_| robot.display().to_string(),
+            |path| path.display().to_string(),
+        ),
+    }
+}
+
 /// Imports, and lists what is not carried.
 pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
@@ -51,6 +89,10 @@ pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
     let plan = ImportPlan {
         joints: args.joints.clone(),
         driven: args.driven,
+        space: args.space.then(|| SpacePlan {
+            robot: seen_from(args.output.as_deref(), &args.robot),
+            locked: args.lock.clone(),
+        }),
     };
     let imported = import(&input::text(&args.robot)?, &args.robot, &plan)?;
     console.say(&format!("joints: {}", imported.joints.join(", ")));
@@ -59,6 +101,11 @@ pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
     }
     for part in &imported.left_out {
         console.say(&format!("not carried: {part}"));
+    }
+    if args.space {
+        // Whether figures are possible is known once the robot's file is read by its name.
+        let file = args.output.as_deref().unwrap_or(Path::new("model.toml"));
+        Model::parse(&imported.toml, file)?;
     }
     if let Some(file) = &args.output {
         console.write(file, &imported.toml, args.force)?;

@@ -104,6 +104,7 @@ pub fn run(args: &NextArgs, console: &Console) -> Result<ExitStatus> {
     effect_ids(&args.without)?;
     let mut model = input::model(&args.model)?;
     model.hinges_only("proposed motions are for servos that turn")?;
+    model.planar_only("motions are proposed for planar chains")?;
     can_be_moved(&model)?;
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));

@@ -49,6 +49,7 @@ pub fn run(args: &ViewArgs, console: &Console) -> Result<ExitStatus> {
     output::vacant(&args.output, args.force)?;
     let model = input::model(&args.model)?;
     model.hinges_only("a page draws links that turn")?;
+    model.planar_only("a page draws links in their plane")?;
     if let Some(sentence) = model.log.unobserved().into_iter().next() {
         return Err(Error::usage(
             sentence,

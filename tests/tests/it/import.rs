@@ -281,6 +281,7 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
             joints: names.clone(),
             // A rotor needs a drive.
             driven: true,
+            space: None,
         };
         let imported =
             import(&text, &file, &plan).unwrap_or_else(|error| panic!("{robot}: {error}\n{text}"));

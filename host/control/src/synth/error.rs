@@ -13,6 +13,8 @@ mod remedy;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum DesignError {
+    #[error("`{model}` is a robot in space, and gains are designed for planar chains")]
+    InSpace { model: String },
     #[error("no joint of `{model}` is driven")]
     NothingDriven { model: String },
     #[error("the masses and inertias of `{model}` do not make a positive inertia")]

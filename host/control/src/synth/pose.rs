@@ -57,6 +57,11 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError
 
 /// One angle per joint, all of them numbers.
 pub(super) fn check_size(model: &Model, pose_rad: &[f64]) -> Result<(), DesignError> {
+    if model.is_in_space() {
+        return Err(DesignError::InSpace {
+            model: model.name.clone(),
+        });
+    }
     let n = model.link_count();
     if pose_rad.len() != n {
         return Err(DesignError::PoseSize {

@@ -15,6 +15,7 @@ pub fn candidates(model: &Model, motions: &[Motion], without: &[String]) -> Vec<
         .iter()
         .chain(&model.laws)
         .filter(|e| !without.iter().any(|id| id == e.info().id))
+        .filter(|e| !model.is_in_space() || e.acts_in_space())
     {
         let info = effect.info();
         let joints: Vec<Option<usize>> = match info.scope {

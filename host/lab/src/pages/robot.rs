@@ -45,6 +45,9 @@ pub fn stage_page(session: &LabSession) -> Result<Markup, LabError> {
     let evaluation = session.evaluation(&saved, saved.current)?;
     let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
     let run = &evaluation.run;
+    (run.model)
+        .planar_only("links are drawn in their plane")
+        .map_err(|why| LabError::Conflict(why.to_string()))?;
     let mut scene = Scene::measured(&run.model, &run.data.motions);
     let mut comparison = evaluation.at_its_horizon().clone();
     comparison.model = format!("model {}", saved.current);

@@ -66,7 +66,7 @@ fn present(robot: &LiveRobot, model: Option<&Model>) -> Markup {
             canvas #live-shape role="img" aria-label="The robot's shape at this moment" {}
             div #live-charts {}
         }
-        @if let Some(model) = model {
+        @if let Some(model) = model.filter(|model| !model.is_in_space()) {
             // What could end the script element is written otherwise.
             @let scene = serde_json::to_string(&Scene::measured(model, &[])).unwrap_or_default();
             script #shape type="application/json" { (PreEscaped(scene.replace('<', "\\u003c"))) }

@@ -39,6 +39,7 @@ impl LabSession {
             ));
         }
         model.hinges_only("proposed motions are for servos that turn")?;
+        model.planar_only("motions are proposed for planar chains")?;
         let (of, diagnosis) = self.diagnosis_for(report, &begun, &view)?;
         report.tell("motions");
         let logs = self.log_set(&view);

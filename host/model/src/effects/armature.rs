@@ -75,6 +75,6 @@ impl Law for Armature {
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
-        rig.chain.links[joint].armature_kg_m2 += values[0];
+        rig.add_armature(joint, values[0]);
     }
 }

@@ -96,6 +96,10 @@ impl BaseSpring {
 }
 
 impl Law for BaseCompliance {
+    fn acts_in_space(&self) -> bool {
+        false
+    }
+
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
         rig.base_spring = BaseSpring::new(values[1], values[0], values[2]);
     }

@@ -43,6 +43,10 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for BaseTilt {
+    fn acts_in_space(&self) -> bool {
+        false
+    }
+
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {
         rig.gravity_turn_rad += if rig.turned { -values[0] } else { values[0] };
     }

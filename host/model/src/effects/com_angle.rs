@@ -51,6 +51,10 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 };
 
 impl Law for ComAngle {
+    fn acts_in_space(&self) -> bool {
+        false
+    }
+
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
         rig.chain.links[joint].com_angle_rad += values[0];
     }

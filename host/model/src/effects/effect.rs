@@ -37,6 +37,11 @@ pub trait Law: Sync + fmt::Debug {
         None
     }
 
+    /// Whether it has a meaning where the robot is one in space, not a planar chain.
+    fn acts_in_space(&self) -> bool {
+        true
+    }
+
     /// Body: changes the rig's constants before a motion is simulated.
     fn body(&self, _values: &[f64], _joint: usize, _rig: &mut Rig) {}
 

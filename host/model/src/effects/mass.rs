@@ -57,13 +57,11 @@ impl Law for Mass {
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
-        let link = &mut rig.chain.links[joint];
-        if link.mass_kg > 0.0 {
-            let factor = (1.0 + values[0] / link.mass_kg).max(LEAST_SHARE);
-            link.mass_kg *= factor;
-            link.inertia_kg_m2 *= factor;
+        let mass_kg = *rig.mass_kg(joint);
+        if mass_kg > 0.0 {
+            rig.scale_mass(joint, (1.0 + values[0] / mass_kg).max(LEAST_SHARE));
         } else {
-            link.mass_kg = values[0].max(0.0);
+            *rig.mass_kg(joint) = values[0].max(0.0);
         }
     }
 }

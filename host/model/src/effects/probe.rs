@@ -200,10 +200,9 @@ impl Law for Probe {
     }
 
     fn body(&self, values: &[f64], joint: usize, rig: &mut Rig) {
-        let link = &mut rig.chain.links[joint];
         match variable(values) {
-            ProbeVariable::Inertia => link.armature_kg_m2 += values[0],
-            ProbeVariable::Mass => link.mass_kg += values[0],
+            ProbeVariable::Inertia => rig.add_armature(joint, values[0]),
+            ProbeVariable::Mass => *rig.mass_kg(joint) += values[0],
             _ => rig.gravity_turn_rad += if rig.turned { -values[0] } else { values[0] },
         }
     }

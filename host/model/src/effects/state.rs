@@ -1,7 +1,7 @@
 //! What an effect sees, and what it may change.
 
 use super::BaseSpring;
-use crate::dynamics::Chain;
+use crate::dynamics::{Chain, SpatialTree};
 
 /// A joint at rest, about which an effect's law is linearised.
 #[derive(Debug, Clone, Copy)]
@@ -43,14 +43,43 @@ impl Slope {
 /// What body effects may change.
 #[derive(Debug, Clone)]
 pub struct Rig {
-    /// The rigid chain.
+    /// The rigid chain; without links where the robot is one in space.
     pub chain: Chain,
+    /// A robot in space.
+    pub tree: Option<SpatialTree>,
     /// Angle by which gravity is turned in the rig's plane, rad, counter-clockwise.
     pub gravity_turn_rad: f64,
     /// Whether the rig stands turned by 180 degrees about the vertical, which flips a tilt's sign.
     pub turned: bool,
     /// What the base stands on, where it gives way.
     pub base_spring: Option<BaseSpring>,
+}
+
+impl Rig {
+    /// Adds to the inertia of a joint's rotor, kg m^2, or kg.
+    pub fn add_armature(&mut self, joint: usize, inertia_kg_m2: f64) {
+        match &mut self.tree {
+            Some(tree) => tree.links[joint].armature_kg_m2 += inertia_kg_m2,
+            None => self.chain.links[joint].armature_kg_m2 += inertia_kg_m2,
+        }
+    }
+
+    /// Mass of the link behind a joint, kg.
+    pub fn mass_kg(&mut self, joint: usize) -> &mut f64 {
+        match &mut self.tree {
+            Some(tree) => &mut tree.links[joint].mass_kg,
+            None => &mut self.chain.links[joint].mass_kg,
+        }
+    }
+
+    /// Makes a link heavier by this factor, its inertia about the centre of mass too.
+    pub fn scale_mass(&mut self, joint: usize, factor: f64) {
+        *self.mass_kg(joint) *= factor;
+        match &mut self.tree {
+            Some(tree) => tree.links[joint].inertia_kg_m2 *= factor,
+            None => self.chain.links[joint].inertia_kg_m2 *= factor,
+        }
+    }
 }
 
 /// The motor at an instant.

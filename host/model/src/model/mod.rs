@@ -1,4 +1,4 @@
-//! A robot or a bench arm as plain numbers: one planar chain of n links for everything.
+//! A robot or a bench arm as plain numbers: a planar chain of n links, or a tree of them in space.
 //!
 //! [`Model::load`] reads the TOML file, refusing what is unknown or impossible with its line;
 //! [`edit`] writes effects and fitted values back without losing a comment.
@@ -19,6 +19,7 @@ mod rate_sensor;
 pub mod reader;
 mod reason;
 mod rig;
+mod robot;
 pub mod source;
 pub mod suggest;
 mod toml_reason;
@@ -33,6 +34,7 @@ pub use path::ParameterPath;
 pub use pose::{hanging, upright};
 pub use rate_sensor::RateSensor;
 pub use reason::{ModelReason, PathReason};
+pub use robot::Robot;
 pub use toml_reason::TomlReason;
 pub use unit::{Dimension, Unit};
 
@@ -40,7 +42,7 @@ use crate::effects::{self, Effect, Scope};
 use crate::error::Result;
 use std::path::Path;
 
-/// A planar chain of links hanging from, or standing on, a fixed base.
+/// A planar chain of links hanging from, or standing on, a fixed base; or a robot in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     /// Name for reports.
@@ -60,6 +62,10 @@ pub struct Model {
     pub links: Vec<Link>,
     /// Joints from the base outwards, as many as links.
     pub joints: Vec<Joint>,
+    /// Where links and joints are those of a robot in space: its file. A link's `com_m` is then how
+    /// far the centre of mass is from the origin of the joint's frame, its moment of inertia that
+    /// about a line along the joint's axis.
+    pub robot: Option<Robot>,
     /// Physical effects beyond the rigid chain and its ideal drives.
     pub effects: Vec<EffectInstance>,
     /// Effects that the file defines by an expression, whether they act or are candidates.

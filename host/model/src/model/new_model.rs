@@ -123,8 +123,7 @@ fn write_link(text: &mut String, index: usize, link: &LinkPlan) {
 }
 
 fn write_joint(text: &mut String, index: usize, link: &LinkPlan) {
-    let drive = toml_edit::Value::from(link.drive.as_str());
-    let _ = write!(text, "\n[[joint]] # {}\ndrive = {drive}\n", index + 1);
+    let _ = write!(text, "\n[[joint]] # {}\n", index + 1);
     if let Some(slide) = &link.slide {
         let (direction, turn) = (number(slide.direction_rad), number(slide.link_rad));
         let _ = writeln!(
@@ -132,6 +131,13 @@ fn write_joint(text: &mut String, index: usize, link: &LinkPlan) {
             "axis = \"slide\"\nslide_rad = {direction}\nlink_rad = {turn}"
         );
     }
+    write_drive(text, link);
+}
+
+/// Writes what drives a joint.
+pub(super) fn write_drive(text: &mut String, link: &LinkPlan) {
+    let drive = toml_edit::Value::from(link.drive.as_str());
+    let _ = writeln!(text, "drive = {drive}");
     let [per_place, per_speed, stall, no_load] = match link.slide {
         None => [
             JointField::GainPerRad,
@@ -188,7 +194,7 @@ fn log_table(plan: &ModelPlan) -> String {
 
 /// A number as TOML writes it, with twelve significant digits: what is beyond them is rounding of
 /// the arithmetic that made it.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let rounded = format!("{value:.11e}").parse().unwrap_or(value);
     toml_edit::Value::from(rounded).to_string()
 }

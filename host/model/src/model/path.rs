@@ -64,7 +64,15 @@ impl ParameterPath {
     pub fn get(&self, model: &Model) -> Option<f64> {
         match *self {
             ParameterPath::Link { index, field } => {
-                Some(*field.of(&mut model.links.get(index)?.clone()))
+                let value = *field.of(&mut model.links.get(index)?.clone());
+                // Where the next joint is, a robot's file says; and it has no direction to a centre
+                // of mass on the joint, nor proportions of moments that are none.
+                let is_free = match field {
+                    LinkField::Mass => true,
+                    LinkField::Length => false,
+                    LinkField::Com | LinkField::Inertia => value != 0.0,
+                };
+                (model.robot.is_none() || is_free).then_some(value)
             }
             ParameterPath::Joint { index, field } => {
                 Some(*field.of(&mut model.joints.get(index)?.clone())?)

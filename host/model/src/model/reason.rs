@@ -86,6 +86,59 @@ pub enum ModelReason {
         /// The effect.
         id: &'static str,
     },
+    /// An effect that has no meaning for a robot in space.
+    #[error("`{id}` is that of a planar chain, and this is a robot in space")]
+    NotInSpace {
+        /// The effect.
+        id: &'static str,
+    },
+    /// A robot's file that cannot be read.
+    #[error("cannot read the robot's file {file}: {source_text}")]
+    RobotUnread {
+        /// The file.
+        file: String,
+        /// Why.
+        source_text: String,
+    },
+    /// A robot's file of which no model can be made.
+    #[error("{why}")]
+    RobotRefused {
+        /// Why.
+        why: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A robot's file that is not the one noted.
+    #[error("the robot's file is another than the one noted: its SHA-256 is {found}")]
+    RobotChanged {
+        /// What was found.
+        found: String,
+    },
+    /// A joint or link under a name that the robot's file does not have there.
+    #[error("{what} `{name}` is not the robot's `{wanted}`")]
+    OtherName {
+        /// `joint` or `link`.
+        what: &'static str,
+        /// The name found.
+        name: String,
+        /// The name in the robot's file.
+        wanted: String,
+    },
+    /// Another number of joints, or of links, than the robot has.
+    #[error("{found} [[{what}]] tables for {wanted} joints of the robot")]
+    RobotCount {
+        /// `joint` or `link`.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many the robot has that move.
+        wanted: usize,
+        /// Their names.
+        names: String,
+    },
+    /// A payload of a robot in space.
+    #[error("a robot in space has no payload column yet")]
+    PayloadInSpace,
     /// Joints that slide, and angles from the world.
     #[error("the model has joints that slide, and angles from the world")]
     AbsoluteSlides,
@@ -233,6 +286,18 @@ impl Reason for ModelReason {
                 return format!("name a {wanted} joint, or another effect").into();
             }
             NotOnSlide { .. } => "name a joint that turns, or another effect",
+            NotInSpace { .. } => "remove it",
+            RobotUnread { .. } => "name a URDF or MJCF file, relative to the model's",
+            RobotRefused { remedy, .. } => return remedy.as_str().into(),
+            RobotChanged { .. } => {
+                "look what changed; if the model's values still hold, note the new one"
+            }
+            OtherName { .. } => "name joints and links in the order of the robot's file",
+            RobotCount { names, .. } => {
+                return format!("one each, in this order: {names}; hold others in [rig] locked")
+                    .into();
+            }
+            PayloadInSpace => "remove it; put the mass into a link of the robot's file",
             AbsoluteSlides => "write `angles = \"relative\"`: each from the link before",
             SlideUnmeasured => {
                 "name the column of its displacement: a slide's speed alone will not do"

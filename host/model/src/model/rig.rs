@@ -5,9 +5,15 @@ use crate::dynamics::{Chain, ChainLink};
 use crate::effects::{Rig, Scope, Site};
 
 impl Model {
-    /// The rigid chain of the links alone, without any effect.
+    /// The rigid chain of the links alone, without any effect; without links where they make a
+    /// robot in space.
     pub fn chain(&self) -> Chain {
-        let bodies = self.links.iter().zip(&self.joints);
+        let planar = if self.is_in_space() {
+            0
+        } else {
+            self.links.len()
+        };
+        let bodies = self.links.iter().zip(&self.joints).take(planar);
         let links = bodies.map(|(link, joint)| ChainLink {
             length_m: link.length_m,
             com_m: link.com_m,
@@ -27,6 +33,7 @@ impl Model {
     pub fn rig(&self, turned: bool) -> Rig {
         let mut rig = Rig {
             chain: self.chain(),
+            tree: self.tree(),
             gravity_turn_rad: 0.0,
             turned,
             base_spring: None,

@@ -2,7 +2,7 @@
 //! of them.
 
 use super::order::{quantile, ranks};
-use crate::dynamics::EquationsOfMotion;
+use crate::dynamics::{EquationsOfMotion, SpatialTree, SpatialWorkspace};
 use crate::model::{Angles, Drive, MeasuredSignal, Model};
 use crate::motion::Motion;
 
@@ -131,6 +131,9 @@ fn slope(x: &[f64], y: &[f64]) -> f64 {
 
 /// Torque of gravity on a joint, N m, by the model's links at the measured angles; payload apart.
 fn gravity_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
+    if let Some(tree) = model.tree() {
+        return gravity_in_space(&tree, motion, joint);
+    }
     if model.slides() {
         return gravity_with_slides(model, motion, joint);
     }
@@ -152,6 +155,24 @@ fn gravity_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
             torque
         })
         .collect()
+}
+
+/// The same of a robot in space.
+fn gravity_in_space(tree: &SpatialTree, motion: &Motion, joint: usize) -> Vec<f64> {
+    let mut work = SpatialWorkspace::default();
+    let still = vec![0.0; tree.len()];
+    let mut torque = still.clone();
+    let mut at = |k: usize| {
+        let reading: Vec<f64> = motion.position_rad.iter().map(|series| series[k]).collect();
+        tree.inverse(
+            &mut work,
+            [&reading, &still, &still],
+            &mut torque,
+            |_, _| {},
+        );
+        -torque[joint]
+    };
+    (0..motion.len()).map(&mut at).collect()
 }
 
 /// The same where joints slide: torques, or forces, N.

@@ -6,7 +6,7 @@ use super::memory::EffectMemory;
 use super::plant::Plant;
 use super::rows::Rows;
 use super::stepper::Contact;
-use crate::dynamics::{FreeBase, Workspace};
+use crate::dynamics::{FreeBase, SpatialWorkspace, Workspace};
 use crate::effects::{BaseSpring, FrictionState, JointState};
 use crate::model::Drive;
 
@@ -22,6 +22,7 @@ pub(super) struct StateView<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Forces<R: Rows> {
     work: Workspace,
+    spatial: SpatialWorkspace,
     closed: R::Closed,
     held: R::Of<bool>,
     torque: R::Of<f64>,
@@ -42,6 +43,7 @@ impl<R: Rows> Forces<R> {
         let zeros = || R::filled(0.0, n);
         Forces {
             work: Workspace::new(n),
+            spatial: SpatialWorkspace::default(),
             closed: R::closed(plant),
             held: R::filled(false, n),
             torque: zeros(),
@@ -210,6 +212,10 @@ impl<R: Rows> Forces<R> {
             out.copy_from_slice(found.as_ref());
             return;
         }
+        if let Some(tree) = &plant.rig.tree {
+            let joints = [angle, speed, self.torque.as_ref()];
+            return tree.forward(&mut self.spatial, joints, self.held.as_ref(), out);
+        }
         plant.rig.chain.forward(
             &mut self.work,
             plant.base_m_s2,
@@ -273,6 +279,10 @@ impl<R: Rows> Forces<R> {
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the
     /// outside torques with the other sign.
     fn find_gear_loads(&mut self, plant: &Plant, at: StateView<'_>) {
+        if let Some(tree) = &plant.rig.tree {
+            let joints = [at.angle, at.speed, self.zeros.as_ref()];
+            return tree.inverse(&mut self.spatial, joints, self.loads.as_mut(), |_, _| {});
+        }
         plant.rig.chain.inverse(
             plant.rig.gravity_turn_rad,
             at.angle,
@@ -290,8 +300,14 @@ impl<R: Rows> Forces<R> {
                 *slope = 0.0;
             }
         }
+        let bearing = &mut self.bearing;
+        if let Some(tree) = &plant.rig.tree {
+            let joints = [at.angle, at.speed, &*out];
+            let told = |joint, force_n| bearing[joint] = force_n;
+            return tree.inverse(&mut self.spatial, joints, self.loads.as_mut(), told);
+        }
         let (rig, joints) = (&plant.rig, [at.angle, at.speed, out]);
-        let mut each = |joint, _, force: [f64; 2]| self.bearing[joint] = force[0].hypot(force[1]);
+        let mut each = |joint, _, force: [f64; 2]| bearing[joint] = force[0].hypot(force[1]);
         rig.chain
             .newton_euler(rig.gravity_turn_rad, joints, &mut each);
     }

@@ -15,6 +15,8 @@ pub(super) use rate_reading::RateReading;
 pub struct Plant {
     pub(super) rig: Rig,
     pub(super) joints: Vec<JointPlan>,
+    /// Of each joint, whether it slides.
+    pub(super) slides: Vec<bool>,
     /// Stands for gravity: see [`Chain::base_m_s2`].
     pub(super) base_m_s2: [f64; 2],
     /// Angle from hanging of the zero of the log's angles, rad, where these are from the world.
@@ -112,6 +114,9 @@ impl Plant {
         delays_s.dedup();
         let offsets_s = || joints.iter().map(|joint| joint.offset_s);
         Plant {
+            slides: (model.joints.iter())
+                .map(|joint| joint.slide.is_some())
+                .collect(),
             rates,
             rate_readings: Vec::new(),
             rate_joints: Vec::new(),

@@ -56,7 +56,13 @@ pub(crate) fn import(bytes: &[u8]) {
     let plan = ImportPlan {
         joints: Vec::new(),
         driven: bytes.len().is_multiple_of(2),
+        space: None,
     };
+    let in_space = ImportPlan {
+        space: Some(Default::default()),
+        ..plan.clone()
+    };
+    let _ = handstand::model::import::import(text, Path::new("robot.xml"), &in_space);
     if let Ok(imported) = handstand::model::import::import(text, Path::new("robot.xml"), &plan) {
         let model = Model::parse(&imported.toml, Path::new("imported.toml"));
         assert_eq!(

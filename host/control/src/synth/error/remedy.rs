@@ -8,6 +8,9 @@ impl Reason for DesignError {
     fn remedy(&self) -> Cow<'_, str> {
         use DesignError as E;
         Cow::Borrowed(match self {
+            E::InSpace { .. } => {
+                "make a planar chain of joints whose axes are parallel: `handstand import --joints`"
+            }
             E::NothingDriven { .. } => "give a [[joint]] another drive than passive",
             E::NoInertia { .. } => "give every link a mass and an inertia",
             E::DelaysDiffer { .. } => {

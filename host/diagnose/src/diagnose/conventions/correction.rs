@@ -153,8 +153,11 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Correction>
         AngleZero::Horizontal,
     ];
     let others = zeros.into_iter().filter(|zero| *zero != model.angle_zero);
-    all.extend(others.map(Correction::AngleZero));
-    if model.link_count() > 1 && !model.slides() {
+    // The angles of a robot in space are its file's.
+    if !model.is_in_space() {
+        all.extend(others.map(Correction::AngleZero));
+    }
+    if model.link_count() > 1 && !model.slides() && !model.is_in_space() {
         all.push(Correction::Angles(match model.angles {
             Angles::Relative => Angles::Absolute,
             Angles::Absolute => Angles::Relative,

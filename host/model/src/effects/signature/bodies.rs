@@ -33,6 +33,7 @@ pub(super) fn arm(effect: Effect, values: &[f64]) -> Rig {
     };
     let mut rig = Rig {
         chain,
+        tree: None,
         gravity_turn_rad: 0.0,
         turned: false,
         base_spring: None,

@@ -62,6 +62,7 @@ fn rig() -> Rig {
     };
     Rig {
         chain,
+        tree: None,
         gravity_turn_rad: 0.0,
         turned: false,
         base_spring: None,

@@ -10,6 +10,7 @@ mod inertia;
 mod mjcf;
 mod planar;
 mod prefixes;
+mod space;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -17,13 +18,18 @@ mod urdf;
 mod write;
 mod xml;
 
+pub use space::Locked;
 pub use tree::Remark;
 
+use crate::dynamics::SpatialTree;
 use crate::error::{Error, Result};
+use crate::model::robot::fingerprint;
 use planar::planar_chain;
 use prefixes::declared;
+use space::in_space;
 use std::path::Path;
-use tree::TreeDrive;
+use tree::{RobotTree, TreeDrive};
+use write::RobotName;
 use xml::XmlFile;
 
 /// Most bodies of a robot.
@@ -36,6 +42,17 @@ pub struct ImportPlan {
     pub joints: Vec<String>,
     /// Whether joints that the file does not drive are driven by a torque.
     pub driven: bool,
+    /// A robot in space: all of its joints, but those that are held.
+    pub space: Option<SpacePlan>,
+}
+
+/// How a robot in space is taken.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SpacePlan {
+    /// What the model file names the robot's, relative to itself.
+    pub robot: String,
+    /// Joints that are held, and where, rad or m.
+    pub locked: Vec<Locked>,
 }
 
 /// A model made of another simulator's file.
@@ -63,32 +80,25 @@ pub struct Imported {
 /// Broken XML and what the formats' readers refuse, with line and column; joints that make no
 /// planar chain.
 pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
-    let text = declared(text);
-    let file = XmlFile::parse(path, &text)?;
-    let root = file.root();
-    let (format, mut tree) = match root.tag() {
-        "robot" => ("urdf", urdf::tree(root)?),
-        "mujoco" => ("mjcf", mjcf::tree(root)?),
-        other => {
-            let what = format!("<{other}> is no robot's root");
-            return Err(root.wrong(what, "URDF begins with <robot>, MJCF with <mujoco>"));
-        }
-    };
+    let (format, tree) = robot(text, path, plan.driven)?;
     let name = path.display().to_string();
-    if tree.bodies.len() > MOST_BODIES {
-        let what = format!("{name}: {} bodies", tree.bodies.len());
-        return Err(Error::usage(
-            what,
-            format!("at most {MOST_BODIES} are read"),
-        ));
-    }
-    if plan.driven {
-        for joint in tree.bodies.iter_mut().flat_map(|body| &mut body.joints) {
-            if joint.drive == TreeDrive::None {
-                joint.drive = TreeDrive::Torque(joint.most_nm);
-                joint.limited_by = ("actuatorfrcrange", joint.line);
-            }
-        }
+    if let Some(space) = &plan.space {
+        let mut found = in_space(&tree, &space.locked, &name)?;
+        found.left_out.splice(0..0, tree.left_out.iter().cloned());
+        let named = RobotName {
+            file: &space.robot,
+            sha256: &fingerprint(text),
+            locked: &space.locked,
+        };
+        let toml = write::toml_in_space(&tree.name, &mut found, format, &named);
+        let joints = found.joints.into_iter().map(|joint| joint.name);
+        return Ok(Imported {
+            format,
+            toml,
+            joints: joints.collect(),
+            left_out: found.left_out,
+            notes: Vec::new(),
+        });
     }
     let mut chain = planar_chain(&tree, &plan.joints, &name)?;
     let mut left_out = tree.left_out.clone();
@@ -101,5 +111,58 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
         joints: joints.collect(),
         left_out,
         notes: chain.notes,
+    })
+}
+
+/// What a file describes, and its format; joints that nothing drives are given a torque if
+/// `driven`.
+fn robot(text: &str, path: &Path, driven: bool) -> Result<(&'static str, RobotTree)> {
+    let text = declared(text);
+    let file = XmlFile::parse(path, &text)?;
+    let root = file.root();
+    let (format, mut tree) = match root.tag() {
+        "robot" => ("urdf", urdf::tree(root)?),
+        "mujoco" => ("mjcf", mjcf::tree(root)?),
+        other => {
+            let what = format!("<{other}> is no robot's root");
+            return Err(root.wrong(what, "URDF begins with <robot>, MJCF with <mujoco>"));
+        }
+    };
+    if tree.bodies.len() > MOST_BODIES {
+        let what = format!("{}: {} bodies", path.display(), tree.bodies.len());
+        return Err(Error::usage(
+            what,
+            format!("at most {MOST_BODIES} are read"),
+        ));
+    }
+    if driven {
+        for joint in tree.bodies.iter_mut().flat_map(|body| &mut body.joints) {
+            if joint.drive == TreeDrive::None {
+                joint.drive = TreeDrive::Torque(joint.most_nm);
+                joint.limited_by = ("actuatorfrcrange", joint.line);
+            }
+        }
+    }
+    Ok((format, tree))
+}
+
+/// A robot in space, and what its file calls joints and links.
+pub(super) struct RobotInSpace {
+    pub tree: SpatialTree,
+    pub joints: Vec<String>,
+    pub links: Vec<String>,
+}
+
+/// A robot's text as a tree in space.
+///
+/// # Errors
+/// As [`import`], but for joints that make no planar chain.
+pub(super) fn robot_in_space(text: &str, path: &Path, locked: &[Locked]) -> Result<RobotInSpace> {
+    let (_, tree) = robot(text, path, false)?;
+    let found = in_space(&tree, locked, &path.display().to_string())?;
+    Ok(RobotInSpace {
+        tree: found.tree,
+        joints: found.joints.into_iter().map(|joint| joint.name).collect(),
+        links: found.bodies.into_iter().map(|(name, _)| name).collect(),
     })
 }

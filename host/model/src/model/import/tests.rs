@@ -10,6 +10,7 @@ fn imported(text: &str, joints: &[&str]) -> (Imported, Model) {
     let plan = ImportPlan {
         joints: joints.iter().map(ToString::to_string).collect(),
         driven: false,
+        space: None,
     };
     let imported = import(text, Path::new("robot.xml"), &plan).unwrap();
     let model = Model::parse(&imported.toml, Path::new("robot.toml")).unwrap();
@@ -21,6 +22,7 @@ fn refused(text: &str, joints: &[&str]) -> String {
     let plan = ImportPlan {
         joints,
         driven: false,
+        space: None,
     };
     let error = import(text, Path::new("robot.xml"), &plan).unwrap_err();
     assert!(error.remedy().is_some());

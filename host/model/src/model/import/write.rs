@@ -1,13 +1,23 @@
 //! A planar chain as a model file.
 
 use super::planar::{PlanarChain, PlanarLink};
-use super::tree::{Remark, TreeDrive};
+use super::space::{InSpace, Locked};
+use super::tree::{Remark, TreeDrive, TreeJoint};
+use crate::dynamics::{SlideAxis, SpatialLink};
 use crate::effects::{Axis, Parameter, named};
 use crate::error::{Error, Place, Result};
 use crate::model::field::POSITIVE;
-use crate::model::new_model::{LinkPlan, ModelPlan, model_toml};
+use crate::model::new_model::{LinkPlan, ModelPlan, model_toml, number, write_drive};
+use crate::model::robot::link_values;
 use std::fmt::Write as _;
 use std::path::Path;
+
+/// How a model file names a robot's.
+pub(super) struct RobotName<'a> {
+    pub file: &'a str,
+    pub sha256: &'a str,
+    pub locked: &'a [Locked],
+}
 
 /// Heaviest gravity of a model, m/s^2.
 const MOST_GRAVITY_M_S2: f64 = 100.0;
@@ -60,7 +70,7 @@ pub(super) fn toml(
     let text = model_toml(
         &plan,
         &(head + "\n"),
-        &format!("{effects}{}", log_table(chain)),
+        &format!("{effects}{}", log_table(&chain.links)),
     );
     // The model's text is not there for anyone to look into.
     text.map_err(|error| match &error {
@@ -71,6 +81,104 @@ pub(super) fn toml(
         }
         _ => error,
     })
+}
+
+/// The model file of a robot in space; `robot` is what it names the robot's file, `text` that
+/// file's.
+pub(super) fn toml_in_space(
+    name: &str,
+    found: &mut InSpace,
+    format: &str,
+    named: &RobotName,
+) -> String {
+    let mut effects = String::new();
+    let mut links: Vec<PlanarLink> = (found.joints.iter())
+        .zip(&found.tree.links)
+        .map(|(joint, link)| as_listed(joint, link))
+        .collect();
+    for (index, link) in links.iter_mut().enumerate() {
+        possible_drive(link);
+        write_effects(&mut effects, index, link, format);
+    }
+    (found.left_out).extend(links.iter().flat_map(|link| link.joint.left_out.clone()));
+    let quoted = |text: &str| toml_edit::Value::from(text).to_string();
+    let mut text = format!(
+        "# A robot in space, whose shape is that of its {} file: joints and links stand here in the\n\
+         # file's order and by its names. Columns are named after the joints: mend them for your\n\
+         # logs.\n",
+        format.to_uppercase()
+    );
+    for part in &found.left_out {
+        let line = format!("Not carried: {part}").replace(char::is_control, " ");
+        let _ = writeln!(text, "# {line}");
+    }
+    let name = name.replace(char::is_control, " ");
+    let name = if name.trim().is_empty() {
+        "robot"
+    } else {
+        name.as_str()
+    };
+    let _ = write!(
+        text,
+        "\n[rig]\nname = {}\nrobot = {}\nrobot_sha256 = \"{}\"\n",
+        quoted(name),
+        quoted(named.file),
+        named.sha256
+    );
+    if !named.locked.is_empty() {
+        let mut locked = toml_edit::InlineTable::new();
+        for (joint, at) in named.locked {
+            locked.insert(joint, toml_edit::Value::from(*at));
+        }
+        let _ = writeln!(text, "locked = {locked}");
+    }
+    for (index, link) in links.iter().enumerate() {
+        let values = link_values(&found.tree, index);
+        let _ = write!(
+            text,
+            "\n[[link]] # {}\nname = {}\nmass_kg = {}\ncom_m = {} # from the joint's frame\n\
+             inertia_kg_m2 = {} # about the centre of mass, along the joint's axis\n",
+            index + 1,
+            quoted(&found.bodies[index].0),
+            number(values.mass_kg),
+            number(values.com_m),
+            number(values.inertia_kg_m2),
+        );
+        debug_assert_eq!(link.joint.name, found.joints[index].name);
+    }
+    for (index, link) in links.iter().enumerate() {
+        let plan = link_plan(link);
+        let _ = write!(
+            text,
+            "\n[[joint]] # {}\nname = {}\n",
+            index + 1,
+            quoted(&link.joint.name)
+        );
+        write_drive(&mut text, &plan);
+    }
+    text.push_str(&effects);
+    text.push_str(&log_table(&links));
+    text
+}
+
+/// A joint of a robot in space as the writers of effects and columns take one: its angles are the
+/// file's.
+fn as_listed(joint: &TreeJoint, link: &SpatialLink) -> PlanarLink {
+    PlanarLink {
+        joint: joint.clone(),
+        body: (String::new(), joint.line),
+        reversed: false,
+        offset_rad: 0.0,
+        slide: link.slides.then_some(SlideAxis {
+            direction_rad: 0.0,
+            link_rad: 0.0,
+        }),
+        length_m: 0.0,
+        com_m: 0.0,
+        com_angle_rad: 0.0,
+        mass_kg: link.mass_kg,
+        inertia_kg_m2: 0.0,
+    }
 }
 
 /// Refuses figures of links that no model has: their bounds are those of `[[link]]` and `[rig]`.
@@ -273,9 +381,9 @@ fn write_effects(text: &mut String, index: usize, link: &mut PlanarLink, format:
     }
 }
 
-fn log_table(chain: &PlanarChain) -> String {
+fn log_table(links: &[PlanarLink]) -> String {
     let mut text = String::from("\n[log]\ntime = { column = \"time_s\", unit = \"s\" }\n");
-    for link in &chain.links {
+    for link in links {
         let column = |of: &str| toml_edit::Value::from(format!("{}.{of}", link.joint.name));
         let reversed = if link.reversed {
             ", reversed = true"

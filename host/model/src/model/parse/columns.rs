@@ -39,6 +39,9 @@ pub(super) fn read(root: &Table, links: &[Link], joints: &[Joint]) -> Result<Log
     ])?;
     let name = |key: &str| -> Result<_> { Ok(log.text(key)?.map(str::to_string)) };
     let payload = log.table("payload")?;
+    if payload.is_some() && links.is_empty() {
+        return Err(log.bad_key("payload", ModelReason::PayloadInSpace));
+    }
     let at_m = payload.map(|table| table.required_number("at_m", EITHER_SIGN));
     Ok(LogColumns {
         time: column(&log.required_table("time")?, "time", Dimension::Time)?,

@@ -8,11 +8,19 @@ use crate::effects::{EFFECTS, Effect, Scope};
 use crate::error::Result;
 use crate::model::effect_on;
 
-pub(super) fn read(root: &Table, joints: &[Joint], laws: &[Effect]) -> Result<Vec<EffectInstance>> {
+pub(super) fn read(
+    root: &Table,
+    joints: &[Joint],
+    laws: &[Effect],
+    in_space: bool,
+) -> Result<Vec<EffectInstance>> {
     let mut effects: Vec<EffectInstance> = Vec::new();
     for table in root.tables("effect")? {
         let effect = effect(&table, joints, laws)?;
         let id = effect.effect.info().id;
+        if in_space && !effect.effect.acts_in_space() {
+            return Err(table.bad("kind", ModelReason::NotInSpace { id }));
+        }
         let meets = |other: &EffectInstance| other.meets(id, effect.joint, joints);
         if effects.iter().any(meets) {
             return Err(table.bad("kind", ModelReason::EffectTwice { id }));

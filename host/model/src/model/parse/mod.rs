@@ -4,6 +4,7 @@ mod columns;
 mod effects;
 mod expressions;
 mod fit;
+mod in_space;
 #[cfg(test)]
 mod slide_tests;
 #[cfg(test)]
@@ -14,7 +15,7 @@ use super::limits::Limits;
 use super::reader::Table;
 use super::reason::ModelReason;
 use super::source::TomlSource;
-use super::{AngleZero, Angles, Drive, Joint, Link, Model, Motor};
+use super::{AngleZero, Angles, Drive, Joint, Link, Model, Motor, Robot};
 use crate::dynamics::SlideAxis;
 use crate::effects::Axis;
 use crate::error::Result;
@@ -43,28 +44,49 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     root.only(&["rig", "link", "joint", "expression", "effect", "fit", "log"])?;
 
     let rig = root.required_table("rig")?;
-    rig.only(&[
-        "name",
-        "angle_zero",
-        "angles",
-        "gravity_m_s2",
-        "step_s",
-        "guessed",
-    ])?;
-    let links = links(&root)?;
-    let joints = joints(&root, links.len())?;
+    let robot = Robot::read(&rig, file)?;
+    let of_shape: &[&str] = match robot {
+        None => &["angle_zero", "angles"],
+        Some(_) => &["robot", "robot_sha256", "locked"],
+    };
+    rig.only(&[of_shape, &["name", "gravity_m_s2", "step_s", "guessed"]].concat())?;
+    let (links, joints) = match &robot {
+        None => {
+            let links = links(&root)?;
+            let joints = joints(&root, links.len())?;
+            (links, joints)
+        }
+        Some(robot) => (
+            in_space::links(&root, robot)?,
+            in_space::joints(&root, robot)?,
+        ),
+    };
     let laws = expressions::read(&root)?;
-    let effects = effects::read(&root, &joints, &laws)?;
-    let log = columns::read(&root, &links, &joints)?;
+    let effects = effects::read(&root, &joints, &laws, robot.is_some())?;
+    let planar = if robot.is_some() {
+        &[]
+    } else {
+        links.as_slice()
+    };
+    let log = columns::read(&root, planar, &joints)?;
+    let (angle_zero, gravity_m_s2) = match &robot {
+        None => (
+            rig.required("angle_zero", rig.choice("angle_zero", &ANGLE_ZERO)?)?,
+            9.81,
+        ),
+        // Its angles are those of the robot's file.
+        Some(robot) => (AngleZero::Hanging, robot.tree.gravity_m_s2.norm()),
+    };
     let mut model = Model {
         name: rig.required_text("name")?.to_string(),
-        angle_zero: rig.required("angle_zero", rig.choice("angle_zero", &ANGLE_ZERO)?)?,
+        angle_zero,
         angles: rig.choice("angles", &ANGLES)?.unwrap_or(Angles::Relative),
-        gravity_m_s2: rig.number("gravity_m_s2", GRAVITY)?.unwrap_or(9.81),
+        gravity_m_s2: rig.number("gravity_m_s2", GRAVITY)?.unwrap_or(gravity_m_s2),
         step_s: rig.number("step_s", STEP_S)?.unwrap_or(0.005),
         guessed: rig.flag("guessed")?,
         links,
         joints,
+        robot,
         effects,
         laws,
         free: Vec::new(),
@@ -141,7 +163,23 @@ fn joints(root: &Table, links: usize) -> Result<Vec<Joint>> {
     if joints < links {
         return Err(root.bad_table(ModelReason::MissingJoint { links, joints }));
     }
-    tables.iter().map(joint).collect()
+    let joints = tables.iter().map(|table| {
+        let axis = table.choice("axis", &AXES)?.unwrap_or(Axis::Hinge);
+        let slide = match axis {
+            Axis::Hinge => None,
+            Axis::Slide => Some(SlideAxis {
+                direction_rad: table.required_number("slide_rad", ONE_TURN)?,
+                link_rad: table.number("link_rad", ONE_TURN)?.unwrap_or(0.0),
+            }),
+        };
+        let of_axis: &[&str] = match axis {
+            Axis::Hinge => &["axis"],
+            Axis::Slide => &["axis", "slide_rad", "link_rad"],
+        };
+        let drive = drive(table, axis, of_axis)?;
+        Ok(Joint { drive, slide })
+    });
+    joints.collect()
 }
 
 /// The keys of what a motor and its regulator are, by how the joint moves: torque or force at
@@ -158,14 +196,12 @@ fn motor_keys(axis: Axis) -> [&'static str; 4] {
     sorted
 }
 
-fn joint(table: &Table) -> Result<Joint> {
-    let axis = table.choice("axis", &AXES)?.unwrap_or(Axis::Hinge);
+/// What drives the joint of a table, which has these keys beside those of its drive.
+fn drive(table: &Table, axis: Axis, others: &[&'static str]) -> Result<Drive> {
     let [gain_per_angle, gain_per_speed, stall, no_load] = motor_keys(axis);
     let drive = table.required("drive", table.choice("drive", &DRIVES)?)?;
-    let mut known = vec!["drive", "axis"];
-    if axis == Axis::Slide {
-        known.extend(["slide_rad", "link_rad"]);
-    }
+    let mut known = vec!["drive"];
+    known.extend(others);
     if !matches!(drive, "passive" | "torque") {
         known.extend([stall, no_load, "nominal_supply_v"]);
     }
@@ -177,7 +213,7 @@ fn joint(table: &Table) -> Result<Joint> {
     table.only(&known)?;
     let gain = |key: &str| table.required_number(key, ABOVE_ZERO);
     let motor = || motor(table, stall, no_load);
-    let drive = match drive {
+    Ok(match drive {
         "passive" => Drive::Passive,
         "torque" => Drive::Torque,
         "duty" => Drive::Duty(motor()?),
@@ -189,15 +225,7 @@ fn joint(table: &Table) -> Result<Joint> {
             gain_s_per_rad: gain(gain_per_speed)?,
             motor: motor()?,
         },
-    };
-    let slide = match axis {
-        Axis::Hinge => None,
-        Axis::Slide => Some(SlideAxis {
-            direction_rad: table.required_number("slide_rad", ONE_TURN)?,
-            link_rad: table.number("link_rad", ONE_TURN)?.unwrap_or(0.0),
-        }),
-    };
-    Ok(Joint { drive, slide })
+    })
 }
 
 const AXES: [(&str, Axis); 2] = [("hinge", Axis::Hinge), ("slide", Axis::Slide)];

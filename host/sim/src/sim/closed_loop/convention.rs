@@ -6,10 +6,11 @@ use std::f64::consts::{PI, TAU};
 
 impl PosedPlant {
     /// Deviations from the pose, rad, at which it stands without torque: what holds eccentric
-    /// masses in balance. None where joints slide: no controller that asks for it takes such.
+    /// masses in balance. None where joints slide, or in space: no controller
+    /// that asks for it takes such.
     pub fn balanced_rad(&self) -> Vec<f64> {
         let rig = &self.plant.rig;
-        if rig.chain.slides() {
+        if rig.chain.slides() || rig.tree.is_some() {
             return vec![0.0; self.joints()];
         }
         let moments = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad).moments_kg_m();

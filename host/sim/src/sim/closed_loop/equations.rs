@@ -21,7 +21,11 @@ impl Equations {
         let held = |joint: &crate::sim::joint_plan::JointPlan| {
             !joint.has_joint_effects() && joint.follows_input
         };
-        if plant.senses || plant.remembers > 0 || !plant.joints.iter().all(held) {
+        if plant.rig.tree.is_some()
+            || plant.senses
+            || plant.remembers > 0
+            || !plant.joints.iter().all(held)
+        {
             return Equations::General;
         }
         let (chain, turn_rad) = (&plant.rig.chain, plant.rig.gravity_turn_rad);

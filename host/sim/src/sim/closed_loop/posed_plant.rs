@@ -144,7 +144,7 @@ impl PosedPlant {
     /// Whether a joint slides.
     #[inline]
     pub fn slides(&self, joint: usize) -> bool {
-        self.plant.rig.chain.links[joint].slide.is_some()
+        self.plant.slides[joint]
     }
 
     /// Number of driven joints.

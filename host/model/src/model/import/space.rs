@@ -1,0 +1,225 @@
+//! A robot's file as a tree of links in space: every joint that moves alone, the rest held.
+
+use super::tree::{
+    Fault, FaultyPart, Inertial, JointMotion, Remark, RobotTree, TreeBody, TreeJoint,
+};
+use crate::dynamics::{SpatialLink, SpatialTree};
+use crate::error::{Error, Place, Result};
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
+
+/// A joint that is held, and where, rad or m.
+pub type Locked = (String, f64);
+
+/// The tree, and how the file names its joints and links.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct InSpace {
+    pub tree: SpatialTree,
+    /// Of each link: the joint that carries it.
+    pub joints: Vec<TreeJoint>,
+    /// Of each link: the body's name and line.
+    pub bodies: Vec<(String, usize)>,
+    pub left_out: Vec<Remark>,
+}
+
+/// Builds the tree link by link.
+struct Builder<'a> {
+    robot: &'a RobotTree,
+    locked: &'a [Locked],
+    file: &'a str,
+    /// Of each body: the link to which it is fixed, none for the base, and where it stands in that
+    /// link's frame.
+    fixed: Vec<(Option<usize>, Isometry3<f64>)>,
+    inertials: Vec<Inertial>,
+    found: InSpace,
+}
+
+/// The tree of all hinges and slides of a robot but those locked, and those that follow another
+/// joint, which are held where the file has them.
+///
+/// # Errors
+/// A joint that is locked and not there, one that moves in several ways, and links that would move
+/// without mass.
+pub(super) fn in_space(robot: &RobotTree, locked: &[Locked], file: &str) -> Result<InSpace> {
+    let names = || robot.bodies.iter().flat_map(|body| &body.joints);
+    for (name, _) in locked {
+        if !names().any(|joint| joint.name == *name) {
+            let all: Vec<&str> = names().map(|joint| joint.name.as_str()).collect();
+            return Err(Error::usage(
+                format!("{file}: there is no joint \"{name}\" to lock"),
+                format!("its joints: {}", all.join(", ")),
+            ));
+        }
+    }
+    let mut builder = Builder {
+        robot,
+        locked,
+        file,
+        fixed: Vec::with_capacity(robot.bodies.len()),
+        inertials: Vec::new(),
+        found: InSpace {
+            tree: SpatialTree {
+                links: Vec::new(),
+                gravity_m_s2: robot.gravity_m_s2,
+            },
+            joints: Vec::new(),
+            bodies: Vec::new(),
+            left_out: Vec::new(),
+        },
+    };
+    for body in 0..robot.bodies.len() {
+        builder.add(body)?;
+    }
+    builder.finish()
+}
+
+impl Builder<'_> {
+    fn add(&mut self, index: usize) -> Result<()> {
+        let robot = self.robot;
+        let body = &robot.bodies[index];
+        let (mut owner, mut stands) = match body.parent {
+            Some(parent) => {
+                let (owner, stands) = self.fixed[parent];
+                (owner, stands * body.pose)
+            }
+            None => (None, body.pose),
+        };
+        for joint in &body.joints {
+            let anchor = Translation3::from(joint.anchor_m.coords);
+            let axis = Unit::new_normalize(joint.axis);
+            if let Some(coordinate) = self.held_at(joint)? {
+                let moved = motion(joint, &axis, coordinate - joint.reference_rad);
+                stands = stands * anchor * moved * anchor.inverse();
+                continue;
+            }
+            let place = stands * anchor * motion(joint, &axis, -joint.reference_rad);
+            self.found.tree.links.push(SpatialLink {
+                parent: owner,
+                place,
+                axis,
+                slides: joint.motion == JointMotion::Slide,
+                mass_kg: 0.0,
+                com_m: nalgebra::Vector3::zeros(),
+                inertia_kg_m2: nalgebra::Matrix3::zeros(),
+                armature_kg_m2: 0.0,
+            });
+            self.found.joints.push(joint.clone());
+            self.found.bodies.push((body.name.clone(), body.line));
+            self.inertials.push(Inertial::NONE);
+            owner = Some(self.inertials.len() - 1);
+            stands = Isometry3::from(anchor.inverse());
+        }
+        self.fixed.push((owner, stands));
+        if owner.is_some() {
+            self.sound(index)?;
+        }
+        if let Some(owner) = owner {
+            let part = body.inertial.seen_from(&stands);
+            self.inertials[owner] = self.inertials[owner].with(&part);
+            self.remark(body);
+        }
+        Ok(())
+    }
+
+    /// Where a joint is held; none where it moves.
+    fn held_at(&mut self, joint: &TreeJoint) -> Result<Option<f64>> {
+        let mut hold = |at, why: String| {
+            let remark = Remark::new("joint", Some(&joint.name), why).on(joint.line);
+            self.found.left_out.push(remark);
+            Ok(Some(at))
+        };
+        if let Some((_, at)) = self.locked.iter().find(|(name, _)| *name == joint.name) {
+            return hold(*at, format!("held at {at}"));
+        }
+        let follows = |part: &Remark| {
+            part.part == "mimic" && part.name.as_deref() == Some(joint.name.as_str())
+        };
+        match joint.motion {
+            JointMotion::Free => hold(
+                joint.reference_rad,
+                "it moves in several ways and is held where the file has it".into(),
+            ),
+            JointMotion::Hinge | JointMotion::Slide if self.robot.left_out.iter().any(follows) => {
+                hold(
+                    joint.reference_rad,
+                    "it follows another joint and is held where the file has it".into(),
+                )
+            }
+            JointMotion::Hinge | JointMotion::Slide => Ok(None),
+        }
+    }
+
+    /// Refuses a body that the tree needs and the file has wrong.
+    fn sound(&self, index: usize) -> Result<()> {
+        let own = |fault: &&Fault| {
+            fault.body == index
+                && matches!(
+                    fault.part,
+                    FaultyPart::Pose | FaultyPart::Mass | FaultyPart::Joint
+                )
+        };
+        match self.robot.faults.iter().find(own) {
+            Some(fault) => Err(fault.error()),
+            None => Ok(()),
+        }
+    }
+
+    fn remark(&mut self, body: &TreeBody) {
+        if body.borne != 0.0 {
+            let why = "every link here has its whole weight";
+            let remark = Remark::new("gravcomp", Some(&body.name), why).on(body.line);
+            self.found.left_out.push(remark);
+        }
+        self.found.left_out.extend(body.notes.iter().cloned());
+    }
+
+    fn finish(mut self) -> Result<InSpace> {
+        if self.inertials.is_empty() {
+            return Err(Error::usage(
+                format!("{}: no joint moves", self.file),
+                "a model needs a hinge or a slide that is not locked",
+            ));
+        }
+        for (link, inertial) in self.found.tree.links.iter_mut().zip(&self.inertials) {
+            link.mass_kg = inertial.mass_kg;
+            link.com_m = inertial.com_m.coords;
+            link.inertia_kg_m2 = inertial.inertia_kg_m2;
+        }
+        let massless = |&index: &usize| self.inertials[index].mass_kg <= 0.0;
+        let carries = |index: usize| {
+            let parents = self.found.tree.links.iter().map(|link| link.parent);
+            parents.into_iter().any(|parent| parent == Some(index))
+        };
+        let tip = (0..self.inertials.len())
+            .filter(massless)
+            .find(|&i| !carries(i));
+        if let Some(tip) = tip {
+            let (name, line) = &self.found.bodies[tip];
+            let place = Place {
+                line: Some(*line),
+                ..Place::file(self.file)
+            };
+            return Err(Error::data(
+                place,
+                format!(
+                    "the link {name}, which joint {} moves, has no mass, nor has anything that is \
+                     fixed to it",
+                    self.found.joints[tip].name
+                ),
+                "give it an <inertial>, or lock its joint",
+            ));
+        }
+        Ok(self.found)
+    }
+}
+
+/// How a joint moves its link by this much.
+fn motion(joint: &TreeJoint, axis: &Unit<nalgebra::Vector3<f64>>, by: f64) -> Isometry3<f64> {
+    if joint.motion == JointMotion::Slide {
+        Isometry3::from(Translation3::from(axis.into_inner() * by))
+    } else {
+        Isometry3::from_parts(
+            Translation3::identity(),
+            UnitQuaternion::from_axis_angle(axis, by),
+        )
+    }
+}

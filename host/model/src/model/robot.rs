@@ -1,0 +1,168 @@
+//! A robot in space, as a URDF or MJCF file describes it, and the values that a model changes in
+//! it.
+
+use super::import::{Locked, robot_in_space};
+use super::limits::Limits;
+use super::reader::Table;
+use super::reason::ModelReason;
+use super::{Link, Model};
+use crate::dynamics::{SpatialLink, SpatialTree};
+use crate::error::{Error, Result};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// Where a joint may be held, rad or m.
+const HELD: Limits = Limits::within(-1e3, 1e3);
+
+/// A robot's file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robot {
+    /// As the model's file names it, relative to itself.
+    pub file: String,
+    /// Joints that are held, and where, rad or m.
+    pub locked: Vec<Locked>,
+    /// All links that move, the values as in the robot's file.
+    pub tree: SpatialTree,
+    /// What the file calls each joint.
+    pub joints: Vec<String>,
+    /// What it calls the link behind each joint.
+    pub links: Vec<String>,
+}
+
+impl Robot {
+    /// What `[rig] robot` names, if it names anything; `model` is the model's file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no robot, or is another than the one noted.
+    pub(super) fn read(rig: &Table, model: &Path) -> Result<Option<Robot>> {
+        let Some(file) = rig.text("robot")? else {
+            return Ok(None);
+        };
+        let path = model.parent().unwrap_or(Path::new("")).join(file);
+        let text = std::fs::read_to_string(&path).map_err(|source| {
+            let file = path.display().to_string();
+            rig.bad(
+                "robot",
+                ModelReason::RobotUnread {
+                    file,
+                    source_text: source.to_string(),
+                },
+            )
+        })?;
+        if let Some(noted) = rig.text("robot_sha256")? {
+            let found = fingerprint(&text);
+            if found != noted {
+                return Err(rig.bad("robot_sha256", ModelReason::RobotChanged { found }));
+            }
+        }
+        let mut locked = Vec::new();
+        if let Some(table) = rig.table("locked")? {
+            for name in table.keys() {
+                locked.push((name.to_string(), table.required_number(name, HELD)?));
+            }
+        }
+        let found = robot_in_space(&text, &path, &locked).map_err(|error| match error {
+            Error::Usage(reason) => rig.bad(
+                "robot",
+                ModelReason::RobotRefused {
+                    why: reason.to_string(),
+                    remedy: reason.remedy().into_owned(),
+                },
+            ),
+            error => error,
+        })?;
+        Ok(Some(Robot {
+            file: file.to_string(),
+            locked,
+            tree: found.tree,
+            joints: found.joints,
+            links: found.links,
+        }))
+    }
+
+    /// A link's values in the robot's file, as a model has them.
+    pub fn link(&self, index: usize) -> Link {
+        link_values(&self.tree, index)
+    }
+}
+
+/// A link's values as a model has them.
+pub(super) fn link_values(tree: &SpatialTree, index: usize) -> Link {
+    let link = &tree.links[index];
+    let next = (tree.links.iter()).find(|next| next.parent == Some(index));
+    let com_m = link.com_m.norm();
+    Link {
+        length_m: next.map_or(com_m, |next| next.place.translation.vector.norm()),
+        com_m,
+        mass_kg: link.mass_kg,
+        inertia_kg_m2: about_axis(link),
+    }
+}
+
+/// Moment of inertia about a line through the centre of mass along the joint's axis, kg m^2.
+fn about_axis(link: &SpatialLink) -> f64 {
+    let axis = link.axis.into_inner();
+    axis.dot(&(link.inertia_kg_m2 * axis))
+}
+
+/// SHA-256 of a robot's file, in hexadecimal digits.
+pub(super) fn fingerprint(text: &str) -> String {
+    Sha256::digest(text)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+impl Model {
+    /// The tree of a robot in space with this model's own values: a mass in place of the file's, the
+    /// centre of mass so far from the joint's frame in the file's direction, and moments of inertia
+    /// in the file's proportions, so that they stay those of a body. None of a planar chain.
+    pub fn tree(&self) -> Option<SpatialTree> {
+        let robot = self.robot.as_ref()?;
+        let mut tree = robot.tree.clone();
+        let length = tree.gravity_m_s2.norm();
+        if length > 0.0 {
+            tree.gravity_m_s2 *= self.gravity_m_s2 / length;
+        }
+        for (index, (link, own)) in tree.links.iter_mut().zip(&self.links).enumerate() {
+            let file = robot.link(index);
+            link.mass_kg = own.mass_kg;
+            link.com_m *= share(own.com_m, file.com_m);
+            link.inertia_kg_m2 *= share(own.inertia_kg_m2, file.inertia_kg_m2);
+        }
+        Some(tree)
+    }
+
+    /// Whether it is a robot in space, not a planar chain.
+    pub fn is_in_space(&self) -> bool {
+        self.robot.is_some()
+    }
+
+    /// Refuses a robot in space; `why` reads on from "is a robot in space, and".
+    ///
+    /// # Errors
+    /// A robot in space.
+    pub fn planar_only(&self, why: &str) -> Result<()> {
+        match &self.robot {
+            None => Ok(()),
+            Some(robot) => Err(Error::design(
+                format!("`{}` is a robot in space, and {why}", self.name),
+                format!(
+                    "give a planar chain: `handstand import {} --joints` makes one of joints whose \
+                     axes are parallel",
+                    robot.file
+                ),
+            )),
+        }
+    }
+
+    /// What messages call a joint beside its number: the name in the robot's file, if there is one.
+    pub fn joint_name(&self, joint: usize) -> Option<&str> {
+        let robot = self.robot.as_ref()?;
+        robot.joints.get(joint).map(String::as_str)
+    }
+}
+
+fn share(own: f64, file: f64) -> f64 {
+    if file == 0.0 { 1.0 } else { own / file }
+}
