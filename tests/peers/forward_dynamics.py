@@ -46,7 +46,8 @@ def by_pinocchio(case):
         return None
     model = pinocchio.buildModelFromUrdf(case["file"])
     locked = [i for i, name in enumerate(model.names) if i > 0 and name not in case["joints"]]
-    model = pinocchio.buildReducedModel(model, locked, pinocchio.neutral(model))
+    if locked:
+        model = pinocchio.buildReducedModel(model, locked, pinocchio.neutral(model))
     data = model.createData()
     joints = [model.joints[model.getJointId(name)] for name in case["joints"]]
     rows = []

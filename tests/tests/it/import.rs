@@ -17,10 +17,10 @@ const SLIDING: u64 = 24;
 const STATES: usize = 10;
 
 /// Splitmix64: numbers between -1 and 1.
-struct Draws(u64);
+pub(crate) struct Draws(pub u64);
 
 impl Draws {
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -28,11 +28,11 @@ impl Draws {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    fn above(&mut self, low: f64, high: f64) -> f64 {
+    pub fn above(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * 0.5 * (self.next() + 1.0)
     }
 
-    fn three(&mut self, size: f64) -> String {
+    pub fn three(&mut self, size: f64) -> String {
         format!(
             "{} {} {}",
             size * self.next(),

@@ -16,6 +16,7 @@ mod kills;
 mod mjcf;
 mod next;
 mod simulators;
+mod space;
 mod spoiled;
 mod verdicts;
 

@@ -66,12 +66,9 @@ impl ParameterPath {
             ParameterPath::Link { index, field } => {
                 let value = *field.of(&mut model.links.get(index)?.clone());
                 // Where the next joint is, a robot's file says; and it has no direction to a centre
-                // of mass on the joint, nor proportions of moments that are none.
-                let is_free = match field {
-                    LinkField::Mass => true,
-                    LinkField::Length => false,
-                    LinkField::Com | LinkField::Inertia => value != 0.0,
-                };
+                // of mass on the joint, nor proportions of moments that are none. Between two
+                // joints of one body there is no mass.
+                let is_free = field != LinkField::Length && value != 0.0;
                 (model.robot.is_none() || is_free).then_some(value)
             }
             ParameterPath::Joint { index, field } => {

@@ -4,7 +4,7 @@ use super::super::field::LinkField;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
 use super::super::{Joint, Link, Robot};
-use super::{ABOVE_ZERO, NOT_NEGATIVE, drive};
+use super::{NOT_NEGATIVE, drive};
 use crate::dynamics::SlideAxis;
 use crate::effects::Axis;
 use crate::error::Result;
@@ -24,7 +24,7 @@ pub(super) fn links(root: &Table, robot: &Robot) -> Result<Vec<Link>> {
         Ok(Link {
             length_m: file.length_m,
             com_m: number(LinkField::Com, NOT_NEGATIVE, file.com_m)?,
-            mass_kg: number(LinkField::Mass, ABOVE_ZERO, file.mass_kg)?,
+            mass_kg: number(LinkField::Mass, NOT_NEGATIVE, file.mass_kg)?,
             inertia_kg_m2: number(LinkField::Inertia, NOT_NEGATIVE, file.inertia_kg_m2)?,
         })
     });

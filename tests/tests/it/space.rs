@@ -1,0 +1,219 @@
+//! Robots in space accelerate as in Pinocchio and in MuJoCo: trees drawn at random, and the SO-100
+//! and SO-101 of their owners' files.
+
+use crate::import::Draws;
+use crate::simulators::{answers, python};
+use handstand::Model;
+use handstand::dynamics::SpatialWorkspace;
+use handstand::model::import::{ImportPlan, SpacePlan, import};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::Path;
+
+const TREES: u64 = 200;
+const STATES: usize = 3;
+
+/// For each joint, the one whose link carries it; none of the base.
+fn parents(draws: &mut Draws) -> Vec<Option<usize>> {
+    let count = 1 + draws.above(0.0, 29.999) as usize;
+    (0..count)
+        .map(|joint| (draws.above(0.0, joint as f64 + 0.999) as usize).checked_sub(1))
+        .collect()
+}
+
+fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
+    let parents = parents(draws);
+    let mut text = String::from("<robot name=\"drawn\"><link name=\"base\"/>");
+    for (joint, parent) in parents.iter().enumerate() {
+        let moments = [0; 3].map(|_| draws.above(1e-3, 2e-3));
+        let parent = parent.map_or("base".to_string(), |parent| format!("link{parent}"));
+        let kind = if draws.next() > 0.5 {
+            "prismatic"
+        } else {
+            "revolute"
+        };
+        let _ = write!(
+            text,
+            "<link name=\"link{joint}\"><inertial><origin xyz=\"{}\" rpy=\"{}\"/>\
+             <mass value=\"{}\"/><inertia ixx=\"{}\" iyy=\"{}\" izz=\"{}\" ixy=\"1e-4\" \
+             ixz=\"-2e-4\" iyz=\"{}\"/></inertial></link>\
+             <joint name=\"joint{joint}\" type=\"{kind}\"><parent link=\"{parent}\"/>\
+             <child link=\"link{joint}\"/><origin xyz=\"{}\" rpy=\"{}\"/><axis xyz=\"{}\"/>\
+             <limit lower=\"-9\" upper=\"9\" effort=\"0\" velocity=\"0\"/></joint>",
+            draws.three(0.2),
+            draws.three(1.0),
+            draws.above(0.1, 1.0),
+            moments[0],
+            moments[1],
+            moments[2],
+            1e-4 * draws.next(),
+            draws.three(0.4),
+            draws.three(3.0),
+            draws.three(1.0),
+        );
+    }
+    let names = (0..parents.len()).map(|joint| format!("joint{joint}"));
+    (text + "</robot>", names.collect())
+}
+
+/// Bodies lie within those that carry them, so that joints are numbered as they are met; some
+/// bodies have two.
+fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
+    let parents = parents(draws);
+    let mut names = Vec::new();
+    let mut text = format!(
+        "<mujoco><compiler angle=\"radian\"/><option gravity=\"{}\">\
+         <flag contact=\"disable\"/></option><worldbody>",
+        draws.three(9.81)
+    );
+    for root in (0..parents.len()).filter(|joint| parents[*joint].is_none()) {
+        body(&mut text, &mut names, root, &parents, draws);
+    }
+    (text + "</worldbody></mujoco>", names)
+}
+
+fn body(
+    text: &mut String,
+    names: &mut Vec<String>,
+    own: usize,
+    parents: &[Option<usize>],
+    draws: &mut Draws,
+) {
+    let _ = write!(
+        text,
+        "<body pos=\"{}\" euler=\"{}\">",
+        draws.three(0.4),
+        draws.three(3.0)
+    );
+    let joints = if draws.next() > 0.6 { 2 } else { 1 };
+    for at in 0..joints {
+        let name = format!("joint{own}_{at}");
+        let kind = if draws.next() > 0.5 { "slide" } else { "hinge" };
+        let _ = write!(
+            text,
+            "<joint name=\"{name}\" type=\"{kind}\" axis=\"{}\" pos=\"{}\" ref=\"{}\"/>",
+            draws.three(1.0),
+            draws.three(0.1),
+            draws.next()
+        );
+        names.push(name);
+    }
+    let _ = write!(
+        text,
+        "<inertial mass=\"{}\" pos=\"{}\" fullinertia=\"2e-3 2e-3 2e-3 1e-4 2e-4 -3e-4\"/>",
+        draws.above(0.1, 1.0),
+        draws.three(0.2)
+    );
+    for child in (0..parents.len()).filter(|child| parents[*child] == Some(own)) {
+        body(text, names, child, parents, draws);
+    }
+    text.push_str("</body>");
+}
+
+/// A model of a robot's file beside which it is, and its joints.
+fn model(text: &str, file: &Path, locked: &[String]) -> (Model, Vec<String>) {
+    let robot = file.file_name().unwrap().to_str().unwrap().to_string();
+    let locked = locked.iter().map(|name| (name.clone(), 0.0)).collect();
+    let plan = ImportPlan {
+        space: Some(SpacePlan { robot, locked }),
+        ..ImportPlan::default()
+    };
+    let name = file.display();
+    let imported = import(text, file, &plan).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let model = Model::parse(&imported.toml, &file.with_file_name("model.toml"));
+    let model = model.unwrap_or_else(|error| panic!("{name}: {error}"));
+    (model, imported.joints)
+}
+
+/// Accelerations by the model's rig.
+fn accelerations(model: &Model, [q, dq, tau]: &[Vec<f64>; 3]) -> Vec<f64> {
+    let tree = model.rig(false).tree.expect("a robot in space");
+    let mut out = vec![0.0; q.len()];
+    let held = vec![false; q.len()];
+    let mut work = SpatialWorkspace::default();
+    tree.forward(&mut work, [q, dq, tau], &held, &mut out);
+    out
+}
+
+/// Compares at states drawn; the largest difference, as a share of the largest acceleration.
+fn compare(cases: Vec<(std::path::PathBuf, Model, Vec<String>)>, seed: u64) -> Option<f64> {
+    let python = python()?;
+    let mut draws = Draws(seed);
+    let (mut asked, mut states) = (Vec::new(), Vec::new());
+    for (file, _, names) in &cases {
+        let mut many =
+            |size: f64| -> Vec<f64> { names.iter().map(|_| size * draws.next()).collect() };
+        let own: Vec<[Vec<f64>; 3]> = (0..STATES)
+            .map(|_| [many(3.0), many(5.0), many(4.0)])
+            .collect();
+        let written: Vec<Value> = (own.iter())
+            .map(|[q, dq, tau]| json!({ "q": q, "dq": dq, "tau": tau }))
+            .collect();
+        asked.push(json!({ "file": file, "joints": names, "states": written }));
+        states.push(own);
+    }
+    let mut worst = 0.0f64;
+    let theirs = answers(&python, "forward_dynamics.py", &asked);
+    for (((file, model, _), states), theirs) in cases.iter().zip(states).zip(theirs) {
+        let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs).unwrap();
+        assert_eq!(theirs.len(), STATES, "{}", file.display());
+        for (state, theirs) in states.iter().zip(theirs) {
+            let ours = accelerations(model, state);
+            let size = theirs.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
+            for (ours, theirs) in ours.iter().zip(&theirs) {
+                let off = (ours - theirs).abs() / size;
+                worst = worst.max(off);
+                assert!(off < 1e-9, "{}: {ours} instead of {theirs}", file.display());
+            }
+        }
+    }
+    Some(worst)
+}
+
+#[test]
+fn random_trees_accelerate_as_in_pinocchio_and_mujoco() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut cases = Vec::new();
+    for number in 0..TREES {
+        let mut draws = Draws(number);
+        let ((text, mut names), ending) = match number % 2 {
+            0 => (urdf(&mut draws), "urdf"),
+            _ => (mjcf(&mut draws), "xml"),
+        };
+        let file = folder.path().join(format!("{number}.{ending}"));
+        std::fs::write(&file, &text).unwrap();
+        // Pinocchio holds joints, too; MuJoCo has them all.
+        let held = |_: &&String| number % 2 == 0 && draws.next() > 0.6;
+        let locked: Vec<String> = names[1..].iter().filter(held).cloned().collect();
+        let (model, joints) = model(&text, &file, &locked);
+        names.retain(|name| !locked.contains(name));
+        let (mut sorted, mut wanted) = (joints.clone(), names);
+        sorted.sort();
+        wanted.sort();
+        assert_eq!(sorted, wanted, "{number}");
+        cases.push((file, model, joints));
+    }
+    if let Some(worst) = compare(cases, 1) {
+        println!("{TREES} trees of 1 to 30 bodies, largest difference {worst:.1e}");
+    }
+}
+
+#[test]
+fn arms_of_their_owners_files_accelerate_as_in_pinocchio() {
+    let Ok(data) = std::env::var("HANDSTAND_DATA") else {
+        eprintln!("skipped: HANDSTAND_DATA names no folder of robots");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut cases = Vec::new();
+    for name in ["so100", "so101_new_calib", "so101_old_calib"] {
+        let text = std::fs::read_to_string(format!("{data}/robots/so101/{name}.urdf")).unwrap();
+        let file = folder.path().join(format!("{name}.urdf"));
+        std::fs::write(&file, &text).unwrap();
+        let (model, joints) = model(&text, &file, &[]);
+        cases.push((file, model, joints));
+    }
+    if let Some(worst) = compare(cases, 2) {
+        println!("largest difference {worst:.1e}");
+    }
+}
