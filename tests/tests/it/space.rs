@@ -4,7 +4,7 @@
 use crate::import::Draws;
 use crate::simulators::{answers, python};
 use handstand::Model;
-use handstand::dynamics::SpatialWorkspace;
+use handstand::dynamics::{SpatialEquations, SpatialWorkspace};
 use handstand::model::import::{ImportPlan, SpacePlan, import};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -131,7 +131,7 @@ fn accelerations(model: &Model, [q, dq, tau]: &[Vec<f64>; 3]) -> Vec<f64> {
     let mut out = vec![0.0; q.len()];
     let held = vec![false; q.len()];
     let mut work = SpatialWorkspace::default();
-    tree.forward(&mut work, [q, dq, tau], &held, &mut out);
+    SpatialEquations::new(&tree).forward(&mut work, [q, dq, tau], &held, &mut out);
     out
 }
 

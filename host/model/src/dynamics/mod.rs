@@ -21,4 +21,4 @@ pub use equations::EquationsOfMotion;
 pub use lanes::{Lane, Lanes};
 pub use runge_kutta::{RungeKutta, runge_kutta};
 pub use slide_axis::SlideAxis;
-pub use spatial::{SpatialLink, SpatialTree, SpatialWorkspace};
+pub use spatial::{SpatialEquations, SpatialLink, SpatialTree, SpatialWorkspace};

@@ -2,7 +2,7 @@
 //! of them.
 
 use super::order::{quantile, ranks};
-use crate::dynamics::{EquationsOfMotion, SpatialTree, SpatialWorkspace};
+use crate::dynamics::{EquationsOfMotion, SpatialEquations, SpatialWorkspace};
 use crate::model::{Angles, Drive, MeasuredSignal, Model};
 use crate::motion::Motion;
 
@@ -132,7 +132,7 @@ fn slope(x: &[f64], y: &[f64]) -> f64 {
 /// Torque of gravity on a joint, N m, by the model's links at the measured angles; payload apart.
 fn gravity_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
     if let Some(tree) = model.tree() {
-        return gravity_in_space(&tree, motion, joint);
+        return gravity_in_space(&SpatialEquations::new(&tree), motion, joint);
     }
     if model.slides() {
         return gravity_with_slides(model, motion, joint);
@@ -158,7 +158,7 @@ fn gravity_nm(model: &Model, motion: &Motion, joint: usize) -> Vec<f64> {
 }
 
 /// The same of a robot in space.
-fn gravity_in_space(tree: &SpatialTree, motion: &Motion, joint: usize) -> Vec<f64> {
+fn gravity_in_space(tree: &SpatialEquations, motion: &Motion, joint: usize) -> Vec<f64> {
     let mut work = SpatialWorkspace::default();
     let still = vec![0.0; tree.len()];
     let mut torque = still.clone();

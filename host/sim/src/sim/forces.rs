@@ -212,7 +212,7 @@ impl<R: Rows> Forces<R> {
             out.copy_from_slice(found.as_ref());
             return;
         }
-        if let Some(tree) = &plant.rig.tree {
+        if let Some(tree) = &plant.tree {
             let joints = [angle, speed, self.torque.as_ref()];
             return tree.forward(&mut self.spatial, joints, self.held.as_ref(), out);
         }
@@ -279,7 +279,7 @@ impl<R: Rows> Forces<R> {
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the
     /// outside torques with the other sign.
     fn find_gear_loads(&mut self, plant: &Plant, at: StateView<'_>) {
-        if let Some(tree) = &plant.rig.tree {
+        if let Some(tree) = &plant.tree {
             let joints = [at.angle, at.speed, self.zeros.as_ref()];
             return tree.inverse(&mut self.spatial, joints, self.loads.as_mut(), |_, _| {});
         }
@@ -301,7 +301,7 @@ impl<R: Rows> Forces<R> {
             }
         }
         let bearing = &mut self.bearing;
-        if let Some(tree) = &plant.rig.tree {
+        if let Some(tree) = &plant.tree {
             let joints = [at.angle, at.speed, &*out];
             let told = |joint, force_n| bearing[joint] = force_n;
             return tree.inverse(&mut self.spatial, joints, self.loads.as_mut(), told);

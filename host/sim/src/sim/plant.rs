@@ -5,6 +5,7 @@ mod readings;
 
 use super::hidden::HiddenUnknown;
 use super::joint_plan::JointPlan;
+use crate::dynamics::SpatialEquations;
 use crate::effects::{BaseSpring, CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
 use crate::model::{Angles, MeasuredSignal, Model};
 use crate::motion::Motion;
@@ -14,6 +15,8 @@ pub(super) use rate_reading::RateReading;
 #[derive(Debug, Clone)]
 pub struct Plant {
     pub(super) rig: Rig,
+    /// The equations of a robot in space.
+    pub(super) tree: Option<SpatialEquations>,
     pub(super) joints: Vec<JointPlan>,
     /// Of each joint, whether it slides.
     pub(super) slides: Vec<bool>,
@@ -128,6 +131,7 @@ impl Plant {
             hidden: HiddenUnknown::all(&joints),
             auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
             base,
+            tree: rig.tree.as_ref().map(SpatialEquations::new),
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
             zero_rad: model.angle_zero.from_hanging_rad(),

@@ -60,7 +60,7 @@ impl<const N: usize> Rows for FixedRows<N> {
         // One link has a formula of its own, and a tree in space none.
         match N {
             1 => None,
-            _ if plant.rig.tree.is_some() => None,
+            _ if plant.tree.is_some() => None,
             _ => Dense::new(&plant.rig.chain, plant.rig.gravity_turn_rad),
         }
     }

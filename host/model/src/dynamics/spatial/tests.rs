@@ -67,7 +67,12 @@ fn forward_undoes_inverse_whatever_is_held() {
         }
         let mut work = SpatialWorkspace::default();
         let mut torque = vec![0.0; n];
-        tree.inverse(&mut work, [&angle, &speed, &wanted], &mut torque, |_, _| {});
+        SpatialEquations::new(&tree).inverse(
+            &mut work,
+            [&angle, &speed, &wanted],
+            &mut torque,
+            |_, _| {},
+        );
         let lacking = numbers(&mut random, n, 1.0);
         for i in 0..n {
             if held[i] {
@@ -76,7 +81,12 @@ fn forward_undoes_inverse_whatever_is_held() {
             }
         }
         let mut found = vec![0.0; n];
-        tree.forward(&mut work, [&angle, &speed, &torque], &held, &mut found);
+        SpatialEquations::new(&tree).forward(
+            &mut work,
+            [&angle, &speed, &torque],
+            &held,
+            &mut found,
+        );
         for (found, wanted) in found.iter().zip(&wanted) {
             assert!(
                 (found - wanted).abs() < 1e-9 * (1.0 + wanted.abs()),
@@ -122,7 +132,12 @@ fn a_planar_chain_is_a_tree_whose_axes_are_parallel() {
         let mut work = Workspace::new(n);
         chain.forward(&mut work, base, &angle, &speed, &torque, &held, &mut planar);
         let mut work = SpatialWorkspace::default();
-        tree.forward(&mut work, [&angle, &speed, &torque], &held, &mut spatial);
+        SpatialEquations::new(&tree).forward(
+            &mut work,
+            [&angle, &speed, &torque],
+            &held,
+            &mut spatial,
+        );
         for (planar, spatial) in planar.iter().zip(&spatial) {
             let most = 1e-9 * (1.0 + planar.abs());
             assert!((planar - spatial).abs() < most, "{planar} {spatial}");
@@ -179,7 +194,7 @@ fn energy_is_what_torques_put_in() {
         let mut work = SpatialWorkspace::default();
         let mut acceleration = vec![0.0; n];
         let held = vec![false; n];
-        tree.forward(
+        SpatialEquations::new(&tree).forward(
             &mut work,
             [&angle, &speed, &torque],
             &held,

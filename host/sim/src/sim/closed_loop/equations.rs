@@ -21,7 +21,7 @@ impl Equations {
         let held = |joint: &crate::sim::joint_plan::JointPlan| {
             !joint.has_joint_effects() && joint.follows_input
         };
-        if plant.rig.tree.is_some()
+        if plant.tree.is_some()
             || plant.senses
             || plant.remembers > 0
             || !plant.joints.iter().all(held)
