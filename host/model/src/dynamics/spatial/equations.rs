@@ -8,8 +8,8 @@
 
 use super::SpatialTree;
 use super::small::{
-    Matrix, Symmetric, Vector, add, cross, dot, plus, product, symmetric_of, times, turned,
-    turned_back,
+    Matrix, Symmetric, Vector, add, cross, dot, plus, product, product_transposed, scaled, times,
+    times_transposed, transposed,
 };
 use crate::dynamics::lanes::Lane;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -82,64 +82,65 @@ struct Scratch {
 impl Carried {
     #[inline(always)]
     fn times(&self, a: &Spatial) -> Spatial {
-        let [x, y, z] = self.mixed;
-        let back: Vector = std::array::from_fn(|k| {
-            x[k] * a.turning[0] + y[k] * a.turning[1] + z[k] * a.turning[2]
-        });
         Spatial {
             turning: plus(
                 self.turning.times(&a.turning),
                 times(&self.mixed, &a.shifting),
             ),
-            shifting: plus(back, self.shifting.times(&a.shifting)),
+            shifting: plus(
+                times_transposed(&self.mixed, &a.turning),
+                self.shifting.times(&a.shifting),
+            ),
         }
     }
 
     /// Takes away what the joint gives way to.
     #[inline(always)]
     fn give_way(&mut self, pull: &Spatial, inverse: f64) {
-        let scaled = pull.shifting.map(|k| k * inverse);
         self.turning.subtract_square(&pull.turning, inverse);
         self.shifting.subtract_square(&pull.shifting, inverse);
-        for (row, turning) in self.mixed.iter_mut().zip(pull.turning) {
-            for (entry, share) in row.iter_mut().zip(scaled) {
-                *entry -= turning * share;
-            }
-        }
+        let [x, y, z] = &mut self.mixed;
+        let given = scaled(&pull.shifting, -inverse);
+        add(x, &given, pull.turning[0]);
+        add(y, &given, pull.turning[1]);
+        add(z, &given, pull.turning[2]);
     }
 
     /// Adds the inertia of a link with these axes and this origin.
     #[inline(always)]
     fn add_seen(&mut self, own: &Carried, axes: &Matrix, p: &Vector) {
         let turning = own.turning.seen(axes);
-        let mixed = product(&product(axes, &own.mixed), &transposed(axes));
+        let mixed = product_transposed(&product(axes, &own.mixed), axes);
         let shifting = own.shifting.seen(axes);
-        // With [p] the matrix of the cross product by the origin.
-        let full = shifting.full();
-        let reach: Matrix = {
-            let columns: [Vector; 3] =
-                std::array::from_fn(|k| cross(p, &[full[0][k], full[1][k], full[2][k]]));
-            std::array::from_fn(|i| std::array::from_fn(|k| columns[k][i]))
-        };
-        // Row by row a * [p] is a x p.
-        let crossed = mixed.map(|row| cross(&row, p));
-        let reached = reach.map(|row| cross(&row, p));
+        // With [p] the matrix of the cross product by the origin: [p] a crosses a's columns, which
+        // are the rows of a symmetric one, and a [p] crosses a's rows with p.
+        let [x, y, z] = shifting.full();
+        let reach = transposed(&[cross(p, &x), cross(p, &y), cross(p, &z)]);
+        let crossed = [
+            cross(&mixed[0], p),
+            cross(&mixed[1], p),
+            cross(&mixed[2], p),
+        ];
+        let reached = [
+            cross(&reach[0], p),
+            cross(&reach[1], p),
+            cross(&reach[2], p),
+        ];
         self.turning.add(&turning);
-        self.turning.add(&symmetric_of(|i, k| {
-            -(crossed[i][k] + crossed[k][i]) - reached[i][k]
-        }));
-        for i in 0..3 {
-            for k in 0..3 {
-                self.mixed[i][k] += mixed[i][k] + reach[i][k];
-            }
-        }
+        self.turning.add(&Symmetric([
+            -2.0 * crossed[0][0] - reached[0][0],
+            -(crossed[0][1] + crossed[1][0]) - reached[0][1],
+            -(crossed[0][2] + crossed[2][0]) - reached[0][2],
+            -2.0 * crossed[1][1] - reached[1][1],
+            -(crossed[1][2] + crossed[2][1]) - reached[1][2],
+            -2.0 * crossed[2][2] - reached[2][2],
+        ]));
+        let [a, b, c] = &mut self.mixed;
+        add(a, &plus(mixed[0], reach[0]), 1.0);
+        add(b, &plus(mixed[1], reach[1]), 1.0);
+        add(c, &plus(mixed[2], reach[2]), 1.0);
         self.shifting.add(&shifting);
     }
-}
-
-#[inline(always)]
-fn transposed(a: &Matrix) -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|k| a[k][i]))
 }
 
 impl Scratch {
@@ -148,16 +149,16 @@ impl Scratch {
     fn carried_on(&self, parent: &Spatial) -> Spatial {
         let moved = plus(parent.shifting, cross(&parent.turning, &self.origin));
         Spatial {
-            turning: turned_back(&self.axes, &parent.turning),
-            shifting: turned_back(&self.axes, &moved),
+            turning: times_transposed(&self.axes, &parent.turning),
+            shifting: times_transposed(&self.axes, &moved),
         }
     }
 
     /// A moment and a force on this link, as they act on the parent's frame.
     #[inline(always)]
     fn handed_down(&self, force: &Spatial) -> Spatial {
-        let shifting = turned(&self.axes, &force.shifting);
-        let turning = turned(&self.axes, &force.turning);
+        let shifting = times(&self.axes, &force.shifting);
+        let turning = times(&self.axes, &force.turning);
         Spatial {
             turning: plus(turning, cross(&self.origin, &shifting)),
             shifting,
@@ -207,7 +208,7 @@ impl Link {
                 cross(&self.moment, &a.shifting),
             ),
             shifting: plus(
-                a.shifting.map(|k| k * self.mass_kg),
+                scaled(&a.shifting, self.mass_kg),
                 cross(&a.turning, &self.moment),
             ),
         }
@@ -253,7 +254,7 @@ impl SpatialEquations {
                 slides: link.slides,
                 mass_kg: link.mass_kg,
                 moment: (com * link.mass_kg).into(),
-                inertia: symmetric_of(|i, k| inertia[(i, k)]),
+                inertia: Symmetric::of(&rows(&inertia)),
                 armature: link.armature_kg_m2,
             }
         });
@@ -296,15 +297,17 @@ impl SpatialEquations {
                 .parent
                 .map_or(Spatial::default(), |p| work.links[p].speed);
             let (at, speed) = (&mut work.links[i], speed_rad_s[i]);
+            let [x, y, z] = &link.place;
             if link.slides {
-                at.axes = link.place;
-                at.origin =
-                    std::array::from_fn(|k| link.origin[k] + link.place[k][2] * angle_rad[i]);
+                let moved = scaled(&[x[2], y[2], z[2]], angle_rad[i]);
+                (at.axes, at.origin) = (link.place, plus(link.origin, moved));
             } else {
                 let (sin, cos) = Lane::sin_cos(angle_rad[i]);
-                at.axes = link
-                    .place
-                    .map(|[x, y, z]| [cos * x + sin * y, cos * y - sin * x, z]);
+                at.axes = [
+                    [cos * x[0] + sin * x[1], cos * x[1] - sin * x[0], x[2]],
+                    [cos * y[0] + sin * y[1], cos * y[1] - sin * y[0], y[2]],
+                    [cos * z[0] + sin * z[1], cos * z[1] - sin * z[0], z[2]],
+                ];
                 at.origin = link.origin;
             }
             at.speed = at.carried_on(&parent);
@@ -373,7 +376,7 @@ impl SpatialEquations {
             let mixed = inertia.mixed;
             at.pull = if link.slides {
                 Spatial {
-                    turning: mixed.map(|row| row[2]),
+                    turning: [mixed[0][2], mixed[1][2], mixed[2][2]],
                     shifting: inertia.shifting.column_2(),
                 }
             } else {

@@ -1,4 +1,5 @@
-//! Vectors and matrices of three, in place: nalgebra's products are calls, and a link needs dozens.
+//! Vectors and matrices of three, in place, entry by entry: nalgebra's products and the closures of
+//! arrays are calls where the compiler does not see through them, and a link needs dozens.
 
 /// Three numbers.
 pub type Vector = [f64; 3];
@@ -7,24 +8,18 @@ pub type Matrix = [[f64; 3]; 3];
 
 /// A symmetric matrix: xx, xy, xz, yy, yz, zz.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Symmetric([f64; 6]);
-
-/// The symmetric matrix of these entries.
-#[inline(always)]
-pub fn symmetric_of(entry: impl Fn(usize, usize) -> f64) -> Symmetric {
-    Symmetric([
-        entry(0, 0),
-        entry(0, 1),
-        entry(0, 2),
-        entry(1, 1),
-        entry(1, 2),
-        entry(2, 2),
-    ])
-}
+pub struct Symmetric(pub [f64; 6]);
 
 impl Symmetric {
     pub fn diagonal(value: f64) -> Self {
         Symmetric([value, 0.0, 0.0, value, 0.0, value])
+    }
+
+    /// Of a matrix that is symmetric: the entries above its diagonal.
+    #[inline(always)]
+    pub fn of(full: &Matrix) -> Self {
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = *full;
+        Symmetric([xx, xy, xz, yy, yz, zz])
     }
 
     #[inline(always)]
@@ -46,27 +41,43 @@ impl Symmetric {
 
     #[inline(always)]
     pub fn add(&mut self, other: &Symmetric) {
-        for (entry, other) in self.0.iter_mut().zip(other.0) {
-            *entry += other;
-        }
+        let [xx, xy, xz, yy, yz, zz] = other.0;
+        let own = &mut self.0;
+        own[0] += xx;
+        own[1] += xy;
+        own[2] += xz;
+        own[3] += yy;
+        own[4] += yz;
+        own[5] += zz;
     }
 
     /// Less `share` times the matrix v v'.
     #[inline(always)]
     pub fn subtract_square(&mut self, v: &Vector, share: f64) {
         let [x, y, z] = *v;
-        let [sx, sy, sz] = v.map(|k| k * share);
-        let square = [x * sx, x * sy, x * sz, y * sy, y * sz, z * sz];
-        for (entry, square) in self.0.iter_mut().zip(square) {
-            *entry -= square;
-        }
+        let (sx, sy, sz) = (x * share, y * share, z * share);
+        let own = &mut self.0;
+        own[0] -= x * sx;
+        own[1] -= x * sy;
+        own[2] -= x * sz;
+        own[3] -= y * sy;
+        own[4] -= y * sz;
+        own[5] -= z * sz;
     }
 
     /// The same in the frame in which its own has these axes.
     #[inline(always)]
     pub fn seen(&self, axes: &Matrix) -> Symmetric {
-        let half = product(axes, &self.full());
-        symmetric_of(|i, k| dot(&half[i], &axes[k]))
+        let [x, y, z] = product(axes, &self.full());
+        let [a, b, c] = axes;
+        Symmetric([
+            dot(&x, a),
+            dot(&x, b),
+            dot(&x, c),
+            dot(&y, b),
+            dot(&y, c),
+            dot(&z, c),
+        ])
     }
 }
 
@@ -86,35 +97,57 @@ pub fn cross(a: &Vector, b: &Vector) -> Vector {
 
 #[inline(always)]
 pub fn plus(a: Vector, b: Vector) -> Vector {
-    std::array::from_fn(|k| a[k] + b[k])
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+pub fn scaled(a: &Vector, by: f64) -> Vector {
+    [a[0] * by, a[1] * by, a[2] * by]
 }
 
 /// Adds `share` times `b`.
 #[inline(always)]
 pub fn add(a: &mut Vector, b: &Vector, share: f64) {
-    for (a, b) in a.iter_mut().zip(b) {
-        *a += b * share;
-    }
+    a[0] += b[0] * share;
+    a[1] += b[1] * share;
+    a[2] += b[2] * share;
+}
+
+/// A product; of a frame's axes as columns, a vector of the frame as its parent has it.
+#[inline(always)]
+pub fn times(a: &Matrix, v: &Vector) -> Vector {
+    [dot(&a[0], v), dot(&a[1], v), dot(&a[2], v)]
+}
+
+/// The product of the transposed matrix; of a frame's axes, a vector of the parent as the frame has
+/// it.
+#[inline(always)]
+pub fn times_transposed(a: &Matrix, v: &Vector) -> Vector {
+    let [x, y, z] = a;
+    [
+        x[0] * v[0] + y[0] * v[1] + z[0] * v[2],
+        x[1] * v[0] + y[1] * v[1] + z[1] * v[2],
+        x[2] * v[0] + y[2] * v[1] + z[2] * v[2],
+    ]
 }
 
 #[inline(always)]
-pub fn times(a: &Matrix, v: &Vector) -> Vector {
-    a.map(|row| dot(&row, v))
+pub fn transposed(a: &Matrix) -> Matrix {
+    let [x, y, z] = a;
+    [[x[0], y[0], z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]]
 }
 
 #[inline(always)]
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    a.map(|[x, y, z]| std::array::from_fn(|k| x * b[0][k] + y * b[1][k] + z * b[2][k]))
+    [
+        times_transposed(b, &a[0]),
+        times_transposed(b, &a[1]),
+        times_transposed(b, &a[2]),
+    ]
 }
 
-/// A vector of a frame with these axes, as its parent has it.
+/// The product with the transposed second matrix.
 #[inline(always)]
-pub fn turned(axes: &Matrix, v: &Vector) -> Vector {
-    times(axes, v)
-}
-
-/// A vector of the parent, as a frame with these axes has it.
-#[inline(always)]
-pub fn turned_back(axes: &Matrix, v: &Vector) -> Vector {
-    std::array::from_fn(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
+pub fn product_transposed(a: &Matrix, b: &Matrix) -> Matrix {
+    [times(b, &a[0]), times(b, &a[1]), times(b, &a[2])]
 }

@@ -87,7 +87,8 @@ impl Refusal {
 
 impl From<NotPlanar> for Refusal {
     fn from(NotPlanar(what): NotPlanar) -> Self {
-        let remedy = "a chain here is planar; these joints turn about parallel axes";
+        let remedy =
+            "--space takes the whole robot; a planar chain is of joints about parallel axes";
         Refusal::Joints(None, what, remedy)
     }
 }

@@ -3,7 +3,7 @@
 use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{EffectInstance, Joint};
+use super::super::{EffectInstance, Joint, Robot};
 use crate::effects::{EFFECTS, Effect, Scope};
 use crate::error::Result;
 use crate::model::effect_on;
@@ -12,13 +12,13 @@ pub(super) fn read(
     root: &Table,
     joints: &[Joint],
     laws: &[Effect],
-    in_space: bool,
+    robot: Option<&Robot>,
 ) -> Result<Vec<EffectInstance>> {
     let mut effects: Vec<EffectInstance> = Vec::new();
     for table in root.tables("effect")? {
-        let effect = effect(&table, joints, laws)?;
+        let effect = effect(&table, joints, laws, robot)?;
         let id = effect.effect.info().id;
-        if in_space && !effect.effect.acts_in_space() {
+        if robot.is_some() && !effect.effect.acts_in_space() {
             return Err(table.bad("kind", ModelReason::NotInSpace { id }));
         }
         let meets = |other: &EffectInstance| other.meets(id, effect.joint, joints);
@@ -30,14 +30,19 @@ pub(super) fn read(
     Ok(effects)
 }
 
-fn effect(table: &Table, joints: &[Joint], laws: &[Effect]) -> Result<EffectInstance> {
+fn effect(
+    table: &Table,
+    joints: &[Joint],
+    laws: &[Effect],
+    robot: Option<&Robot>,
+) -> Result<EffectInstance> {
     let kinds = EFFECTS
         .iter()
         .chain(laws)
         .map(|effect| (effect.info().id, *effect));
     let kinds: Vec<(&str, Effect)> = kinds.collect();
     let effect = table.required("kind", table.choice("kind", &kinds)?)?;
-    let joint = at(table, effect, joints)?;
+    let joint = at(table, effect, joints, robot)?;
     let id = effect.info().id;
     let effect = effect_on(effect, joint, joints)
         .ok_or_else(|| table.bad("kind", ModelReason::NotOnSlide { id }))?;
@@ -61,7 +66,12 @@ fn effect(table: &Table, joints: &[Joint], laws: &[Effect]) -> Result<EffectInst
 }
 
 /// The joint it acts on; none if it acts on the whole rig, or on `"all"` driven joints.
-fn at(table: &Table, effect: Effect, joints: &[Joint]) -> Result<Option<usize>> {
+fn at(
+    table: &Table,
+    effect: Effect,
+    joints: &[Joint],
+    robot: Option<&Robot>,
+) -> Result<Option<usize>> {
     if effect.info().scope == Scope::WholeRig {
         let id = effect.info().id;
         return if table.has("joint") {
@@ -79,7 +89,12 @@ fn at(table: &Table, effect: Effect, joints: &[Joint]) -> Result<Option<usize>> 
             Err(table.bad("joint", ModelReason::NoDrivenJoint { id }))
         };
     }
-    let joint = table.required("joint", table.index("joint", joints.len())?)?;
+    let names = robot.map_or(&[][..], |robot| &robot.joints);
+    let named = names.iter().position(|name| table.is_text("joint", name));
+    let joint = match named {
+        Some(joint) => joint,
+        None => table.required("joint", table.index("joint", joints.len())?)?,
+    };
     ModelReason::unsuited(effect, joint, &joints[joint])
         .map_or(Ok(Some(joint)), |reason| Err(table.bad("joint", reason)))
 }

@@ -6,6 +6,8 @@ mod expressions;
 mod fit;
 mod in_space;
 #[cfg(test)]
+mod in_space_tests;
+#[cfg(test)]
 mod slide_tests;
 #[cfg(test)]
 mod tests;
@@ -62,7 +64,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
         ),
     };
     let laws = expressions::read(&root)?;
-    let effects = effects::read(&root, &joints, &laws, robot.is_some())?;
+    let effects = effects::read(&root, &joints, &laws, robot.as_ref())?;
     let planar = if robot.is_some() {
         &[]
     } else {

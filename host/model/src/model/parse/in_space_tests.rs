@@ -1,0 +1,175 @@
+use super::super::{LinkField, Model, ParameterPath};
+use std::path::{Path, PathBuf};
+
+/// Two hinges across each other, and a slide that carries a gripper.
+const URDF: &str = r#"<robot name="crane">
+<link name="base"/>
+<link name="mast"><inertial><origin xyz="0 0 0.2"/><mass value="2"/>
+<inertia ixx="0.02" iyy="0.02" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="boom"><inertial><origin xyz="0.3 0 0"/><mass value="1"/>
+<inertia ixx="0.001" iyy="0.03" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="cart"><inertial><mass value="0.5"/>
+<inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="jaw"><inertial><origin xyz="0 0.1 0"/><mass value="0.1"/>
+<inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="slew" type="continuous"><parent link="base"/><child link="mast"/><axis xyz="0 0 1"/></joint>
+<joint name="luff" type="continuous"><parent link="mast"/><child link="boom"/>
+<origin xyz="0 0 0.4"/><axis xyz="0 1 0"/></joint>
+<joint name="trolley" type="prismatic"><parent link="boom"/><child link="cart"/><axis xyz="1 0 0"/>
+<limit lower="0" upper="1" effort="9" velocity="1"/></joint>
+<joint name="grip" type="continuous"><parent link="cart"/><child link="jaw"/><axis xyz="1 0 0"/></joint>
+</robot>"#;
+
+const MODEL: &str = r#"[rig]
+name = "crane"
+robot = "crane.urdf"
+locked = { grip = 0.5 }
+
+[[joint]]
+name = "slew"
+drive = "torque"
+[[joint]]
+name = "luff"
+drive = "torque"
+[[joint]]
+name = "trolley"
+drive = "torque"
+
+[log]
+time = { column = "t", unit = "s" }
+[[log.joint]]
+position = { column = "slew", unit = "rad" }
+input = { column = "u1", unit = "N m" }
+[[log.joint]]
+position = { column = "luff", unit = "rad" }
+input = { column = "u2", unit = "N m" }
+[[log.joint]]
+position = { column = "trolley", unit = "m" }
+input = { column = "u3", unit = "N" }
+"#;
+
+fn folder() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("crane.urdf"), URDF).unwrap();
+    let file = folder.path().join("crane.toml");
+    (folder, file)
+}
+
+fn refused(text: &str, file: &Path) -> String {
+    let error = Model::parse(text, file).unwrap_err();
+    format!("{error}; {}", error.remedy().unwrap_or_default())
+}
+
+#[test]
+fn a_robot_has_the_joints_and_masses_of_its_file() {
+    let (_folder, file) = folder();
+    let model = Model::parse(MODEL, &file).unwrap();
+    assert_eq!(model.link_count(), 3);
+    assert!(model.is_in_space() && model.slides());
+    assert_eq!(model.joint_name(1), Some("luff"));
+    let masses: Vec<f64> = model.links.iter().map(|link| link.mass_kg).collect();
+    assert_eq!(masses, [2.0, 1.0, 0.6]);
+    assert_eq!(model.links[1].com_m, 0.3);
+    assert_eq!(model.links[1].inertia_kg_m2, 0.03);
+    assert_eq!(model.gravity_m_s2, 9.81);
+    let tree = model.tree().unwrap();
+    // The jaw is held at 0.5 rad about x.
+    let jaw = nalgebra::Vector3::new(0.0, 0.1 * 0.5f64.cos(), 0.1 * 0.5f64.sin());
+    assert!((tree.links[2].com_m - jaw / 6.0).norm() < 1e-12);
+}
+
+#[test]
+fn the_models_values_take_the_place_of_the_files() {
+    let (_folder, file) = folder();
+    let links = "[[link]]\nname = \"mast\"\n[[link]]\nname = \"boom\"\nmass_kg = 1.5\n\
+                 com_m = 0.6\ninertia_kg_m2 = 0.06\n[[link]]\nname = \"cart\"\n";
+    let text = MODEL.replace(
+        "[[joint]]\nname = \"slew\"",
+        &format!("{links}[[joint]]\nname = \"slew\""),
+    );
+    let model = Model::parse(&text, &file).unwrap();
+    let boom = &model.tree().unwrap().links[1];
+    assert_eq!(boom.mass_kg, 1.5);
+    assert!((boom.com_m.x - 0.6).abs() < 1e-12);
+    let moments = [0, 1, 2].map(|axis| boom.inertia_kg_m2[(axis, axis)]);
+    for (found, wanted) in moments.iter().zip([0.002, 0.06, 0.06]) {
+        assert!((found - wanted).abs() < 1e-12, "{moments:?}");
+    }
+    let free = |text: &str| text.parse::<ParameterPath>().unwrap().get(&model);
+    assert_eq!(free("link2.mass_kg"), Some(1.5));
+    assert_eq!(free("link2.length_m"), None);
+    let mast = ParameterPath::Link {
+        index: 0,
+        field: LinkField::Com,
+    };
+    assert_eq!(mast.get(&model), Some(0.2));
+}
+
+#[test]
+fn effects_act_on_the_joints_that_they_name() {
+    let (_folder, file) = folder();
+    let text = format!(
+        "{MODEL}\n[[effect]]\nkind = \"armature\"\njoint = \"luff\"\ninertia_kg_m2 = 0.02\n\
+         [[effect]]\nkind = \"mass\"\njoint = 3\nadded_kg = 0.6\n"
+    );
+    let tree = Model::parse(&text, &file).unwrap().rig(false).tree.unwrap();
+    assert_eq!(tree.links[1].armature_kg_m2, 0.02);
+    assert!((tree.links[2].mass_kg - 1.2).abs() < 1e-12);
+    let before = Model::parse(MODEL, &file).unwrap().tree().unwrap();
+    let ratio = tree.links[2].inertia_kg_m2[(0, 0)] / before.links[2].inertia_kg_m2[(0, 0)];
+    assert!((ratio - 2.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_makes_no_robot_is_refused_with_the_remedy() {
+    let (_folder, file) = folder();
+    let effect = |kind: &str| format!("{MODEL}\n[[effect]]\nkind = \"{kind}\"\nangle_rad = 0.1\n");
+    let noted = "robot = \"crane.urdf\"\nrobot_sha256 = \"00\"";
+    for (text, told) in [
+        (MODEL.replace("crane.urdf", "none.urdf"), "none.urdf"),
+        (
+            MODEL.replace("robot = \"crane.urdf\"", noted),
+            "its SHA-256 is ",
+        ),
+        (
+            MODEL.replace("\"luff\"\ndrive", "\"lift\"\ndrive"),
+            "`lift` is not the robot's `luff`",
+        ),
+        (
+            MODEL.replace("locked = { grip = 0.5 }\n", ""),
+            "slew, luff, trolley, grip",
+        ),
+        (
+            MODEL.replace("grip = 0.5", "claw = 0.5"),
+            "no joint \"claw\"",
+        ),
+        (
+            MODEL.replace(
+                "name = \"crane\"",
+                "name = \"crane\"\nangle_zero = \"hanging\"",
+            ),
+            "angle_zero",
+        ),
+        (
+            MODEL.replace(
+                "[log]",
+                "[log]\npayload = { column = \"m\", unit = \"kg\", at_m = 0.1 }",
+            ),
+            "no payload",
+        ),
+        (effect("base_tilt"), "a robot in space"),
+    ] {
+        let found = refused(&text, &file);
+        assert!(found.contains(told), "{told}: {found}");
+        assert!(found.contains("crane.toml:"), "{found}");
+    }
+    let planar = Model::parse(MODEL, &file)
+        .unwrap()
+        .planar_only("gains hold chains");
+    assert!(
+        planar
+            .unwrap_err()
+            .to_string()
+            .contains("and gains hold chains")
+    );
+}
