@@ -59,6 +59,7 @@ pub struct AddArgs {
 pub fn run(args: &AddArgs, console: &Console) -> Result<ExitStatus> {
     let text = input::model_text(&args.model)?;
     let model = Model::parse(&text, &args.model)?;
+    input::tell_joints(&model, console);
     let (candidates, start) = args.asked(&model, console)?;
     let split = args.fit.motions(&model, &args.logs, console)?;
     let horizon = args.fit.judging.run.horizon;
@@ -70,7 +71,8 @@ pub fn run(args: &AddArgs, console: &Console) -> Result<ExitStatus> {
     match added {
         Addition::Added { text, refitted } => {
             let before = "for the model refitted without";
-            fit::write(&refitted, &text, &names, before, &args.fit, console)
+            let text = (text.as_str(), args.model.as_path());
+            fit::write(&refitted, text, &names, before, &args.fit, console)
         }
         Addition::Unhelpful(why) => refuse(&why, &names, console),
         Addition::Undetermined(why) => fit::refuse(&why, console),

@@ -57,6 +57,9 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<ExitStatus> {
     let mut findings = Vec::new();
     for (file, name) in files.iter().zip(file_names(&files)) {
         let model = input::model(file)?;
+        if models.is_empty() {
+            input::tell_joints(&model, console);
+        }
         // Each model names columns and zeros its own way.
         let (motions, found) = read_with_findings(&args.logs, &model.log)?;
         let new = |finding: &LogFinding| !findings.contains(finding);

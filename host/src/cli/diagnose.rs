@@ -100,6 +100,7 @@ pub fn run(args: &DiagnoseArgs, console: &Console) -> Result<ExitStatus> {
 pub fn find(args: &DiagnoseArgs, console: &Console) -> Result<Diagnosis> {
     args.page.vacant()?;
     let model = input::model(&args.model)?;
+    input::tell_joints(&model, console);
     let plan = args.plan.load(&model)?;
     let LogDiagnosis { diagnosis, split } = try_all(&model, args, console)?;
     if diagnosis.verdict == Verdict::Unfit {

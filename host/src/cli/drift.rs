@@ -42,6 +42,7 @@ pub struct DriftArgs {
 /// Fits each log, compares, prints.
 pub fn run(args: &DriftArgs, console: &Console) -> Result<ExitStatus> {
     let model = input::model(&args.model)?;
+    input::tell_joints(&model, console);
     let free = free_parameters(&model, &args.free)?;
     // A session is read by itself; that none shares rows with another, or is a copy, shows in all.
     expanded(&args.logs)?;

@@ -17,11 +17,11 @@
 use super::{Console, ExitStatus, input, show};
 use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
-use handstand::model::edit::set_bounds;
+use handstand::model::edit::{moved, set_bounds};
 use handstand::report::{refitted_json, refitted_text};
 use handstand::{Model, Result, output};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Fit a model's free parameters to logs.
 #[derive(Debug, clap::Args)]
@@ -46,6 +46,7 @@ pub struct FitArgs {
 pub fn run(args: &FitArgs, console: &Console) -> Result<ExitStatus> {
     let text = bounded(args)?;
     let model = Model::parse(&text, &args.model)?;
+    input::tell_joints(&model, console);
     let free = free_parameters(&model, &args.free)?;
     let split = args.fit.motions(&model, &args.logs, console)?;
     let horizon = args.fit.judging.run.horizon;
@@ -56,7 +57,8 @@ pub fn run(args: &FitArgs, console: &Console) -> Result<ExitStatus> {
     };
     let text = with_refitted(&text, &args.model, &model, &refitted, &split)?;
     let before = "for the model as it was";
-    write(&refitted, &text, &[], before, &args.fit, console)
+    let text = (text.as_str(), args.model.as_path());
+    write(&refitted, text, &[], before, &args.fit, console)
 }
 
 /// The model's text with the bounds that were asked for.
@@ -86,13 +88,14 @@ pub fn refuse(why: &Undetermined, console: &Console) -> Result<ExitStatus> {
 /// Writes the new model and says what it holds; `before` says which model left the error before.
 pub fn write(
     refitted: &Refitted,
-    text: &str,
+    (text, model): (&str, &Path),
     added: &[String],
     before: &str,
     args: &input::RefitArgs,
     console: &Console,
 ) -> Result<ExitStatus> {
-    output::write_new(&args.output, text, args.force)?;
+    let text = moved(text, model, &args.output)?;
+    output::write_new(&args.output, &text, args.force)?;
     if console.json {
         let mut data = refitted_json(refitted);
         data["model"] = json!(args.output.to_string_lossy());

@@ -179,6 +179,15 @@ pub fn model(path: &Path) -> Result<Model> {
     Model::load(path)
 }
 
+/// Says what the file of a robot in space calls the joints, which are numbered elsewhere.
+pub fn tell_joints(model: &Model, console: &Console) {
+    if let Some(robot) = &model.robot {
+        let numbered = (1..).zip(&robot.joints);
+        let joints: Vec<String> = numbered.map(|(at, name)| format!("{at} {name}")).collect();
+        console.say(&format!("joints: {}", joints.join(", ")));
+    }
+}
+
 /// The text of a model's file.
 ///
 /// # Errors

@@ -112,6 +112,33 @@ fn with_values(
     checked(document, path)
 }
 
+/// The text of a model from beside one file as it is to stand beside another: where their folders
+/// differ, it names a robot's file by its whole path.
+///
+/// # Errors
+/// The text is no model.
+pub fn moved(text: &str, from: &Path, to: &Path) -> Result<String> {
+    let folder = |path: &Path| {
+        std::path::absolute(path)
+            .ok()?
+            .parent()
+            .map(Path::to_path_buf)
+    };
+    let mut document = document(text, from)?;
+    let robot = document.get_mut("rig").and_then(|rig| rig.get_mut("robot"));
+    let named = robot.as_ref().and_then(|robot| robot.as_str());
+    let (Some(named), Some(home)) = (named.map(str::to_string), folder(from)) else {
+        return Ok(text.to_string());
+    };
+    if folder(to) == Some(home.clone()) || Path::new(&named).is_absolute() {
+        return Ok(text.to_string());
+    }
+    if let Some(robot) = robot {
+        *robot = toml_edit::value(home.join(named).display().to_string());
+    }
+    Ok(document.to_string())
+}
+
 /// The text with this integration step, s.
 ///
 /// # Errors
