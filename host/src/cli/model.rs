@@ -55,7 +55,7 @@ pub fn export(args: &ModelExportArgs, console: &Console) -> Result<ExitStatus> {
         vacant(file, args.force)?;
     }
     let model = input::model(&args.model)?;
-    model.planar_only("its robot's file is what other simulators read")?;
+    model.planar_only("what a model changes is not written back into its robot's file")?;
     let (format, exported) = match args.to {
         ExportFormat::Mjcf => ("mjcf", mjcf(&model)),
         ExportFormat::Urdf => ("urdf", urdf(&model)),

@@ -136,6 +136,21 @@ pub enum ModelReason {
         /// Their names.
         names: String,
     },
+    /// A joint whose motor brakes it faster than a step can follow.
+    #[error(
+        "joint `{name}` meets {inertia:.1e} kg m^2, which its motor's back-EMF brakes within \
+         {brakes_s:.1e} s: steps of {step_s} s cannot follow"
+    )]
+    StiffJoint {
+        /// The joint.
+        name: String,
+        /// The inertia, kg m^2.
+        inertia: f64,
+        /// The time constant, s.
+        brakes_s: f64,
+        /// Longest integration step, s.
+        step_s: f64,
+    },
     /// A payload of a robot in space.
     #[error("a robot in space has no payload column yet")]
     PayloadInSpace,
@@ -296,6 +311,9 @@ impl Reason for ModelReason {
             RobotCount { names, .. } => {
                 return format!("one each, in this order: {names}; hold others in [rig] locked")
                     .into();
+            }
+            StiffJoint { .. } => {
+                "add the rotor's inertia, `kind = \"armature\"`, or write a shorter `step_s` in [rig]"
             }
             PayloadInSpace => "remove it; put the mass into a link of the robot's file",
             AbsoluteSlides => "write `angles = \"relative\"`: each from the link before",

@@ -400,6 +400,17 @@ impl SpatialEquations {
         }
     }
 
+    /// The inertia, kg m^2, that each joint's own torque meets at these angles while the others are
+    /// free; of a slide in kg.
+    pub fn joint_inertias(&self, angle_rad: &[f64]) -> Vec<f64> {
+        let n = self.len();
+        let mut work = SpatialWorkspace::default();
+        let still = vec![0.0; n];
+        self.find_motions(&mut work, angle_rad, &still);
+        self.gather(&mut work, &still, &vec![false; n]);
+        work.links.iter().map(|at| 1.0 / at.inverse).collect()
+    }
+
     /// Joint torques, N m, into `out`, that give the tree these accelerations; `bearing_n` is told
     /// each joint's number and the force in its bearing, N.
     ///

@@ -3,7 +3,7 @@
 use super::planar::{PlanarChain, PlanarLink};
 use super::space::{InSpace, Locked};
 use super::tree::{Remark, TreeDrive, TreeJoint};
-use crate::dynamics::{SlideAxis, SpatialLink};
+use crate::dynamics::{SlideAxis, SpatialEquations, SpatialLink, SpatialTree};
 use crate::effects::{Axis, Parameter, named};
 use crate::error::{Error, Place, Result};
 use crate::model::field::POSITIVE;
@@ -18,6 +18,9 @@ pub(super) struct RobotName<'a> {
     pub sha256: &'a str,
     pub locked: &'a [Locked],
 }
+
+/// Longest integration step of a model that names none, s.
+const USUAL_STEP_S: f64 = 0.005;
 
 /// Heaviest gravity of a model, m/s^2.
 const MOST_GRAVITY_M_S2: f64 = 100.0;
@@ -132,6 +135,13 @@ pub(super) fn toml_in_space(
         }
         let _ = writeln!(text, "locked = {locked}");
     }
+    if let Some(step_s) = short_step_s(&found.tree, &links) {
+        let _ = writeln!(
+            text,
+            "step_s = {} # a motor brakes its link so fast: has it no rotor, no `armature`?",
+            number(step_s)
+        );
+    }
     for (index, link) in links.iter().enumerate() {
         let values = link_values(&found.tree, index);
         let _ = write!(
@@ -159,6 +169,20 @@ pub(super) fn toml_in_space(
     text.push_str(&effects);
     text.push_str(&log_table(&links));
     text
+}
+
+/// The step that follows every motor's braking, s; none where the usual one does.
+fn short_step_s(tree: &SpatialTree, links: &[PlanarLink]) -> Option<f64> {
+    let inertias = SpatialEquations::new(tree).joint_inertias(&vec![0.0; tree.len()]);
+    let brakes = links.iter().zip(inertias).filter_map(|(link, inertia)| {
+        let drive = drive_figures(&link.joint.drive);
+        Some((inertia + link.joint.armature_kg_m2) * drive.speed? / drive.stall?)
+    });
+    let fastest_s = brakes.fold(f64::INFINITY, f64::min);
+    (USUAL_STEP_S > 2.0 * fastest_s).then(|| {
+        let rounded = format!("{:.0e}", fastest_s).parse().unwrap_or(fastest_s);
+        f64::max(rounded, 1e-5)
+    })
 }
 
 /// A joint of a robot in space as the writers of effects and columns take one: its angles are the

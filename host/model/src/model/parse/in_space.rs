@@ -3,9 +3,9 @@
 use super::super::field::LinkField;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{Joint, Link, Robot};
+use super::super::{Joint, Link, Model, Robot};
 use super::{NOT_NEGATIVE, drive};
-use crate::dynamics::SlideAxis;
+use crate::dynamics::{SlideAxis, SpatialEquations};
 use crate::effects::Axis;
 use crate::error::Result;
 
@@ -50,6 +50,25 @@ pub(super) fn joints(root: &Table, robot: &Robot) -> Result<Vec<Joint>> {
         })
     });
     joints.collect()
+}
+
+/// Runge-Kutta of fourth order grows where a speed decays in less than the step's 2.8th part.
+const STIFF: f64 = 2.5;
+
+/// Why a step cannot follow some joint, if it cannot: at the pose in which all joints are at 0.
+pub(super) fn stiff(model: &Model) -> Option<ModelReason> {
+    let tree = model.rig(false).tree?;
+    let inertias = SpatialEquations::new(&tree).joint_inertias(&vec![0.0; tree.len()]);
+    (model.joints.iter().zip(inertias).enumerate()).find_map(|(index, (joint, inertia))| {
+        let motor = joint.drive.motor()?;
+        let brakes_s = inertia * motor.no_load_speed_rad_s / motor.stall_torque_nm;
+        (model.step_s > STIFF * brakes_s).then(|| ModelReason::StiffJoint {
+            name: model.joint_name(index).unwrap_or_default().to_string(),
+            inertia,
+            brakes_s,
+            step_s: model.step_s,
+        })
+    })
 }
 
 /// The tables of this kind, one for each of these names and in their order; or none at all.

@@ -163,6 +163,17 @@ fn what_makes_no_robot_is_refused_with_the_remedy() {
         assert!(found.contains(told), "{told}: {found}");
         assert!(found.contains("crane.toml:"), "{found}");
     }
+    let motor = "\"luff\"\ndrive = \"duty\"\nstall_torque_nm = 200.0\nno_load_speed_rad_s = 1.0";
+    let stiff = MODEL
+        .replace("\"luff\"\ndrive = \"torque\"", motor)
+        .replace("u2\", unit = \"N m\"", "u2\", unit = \"1\"");
+    let found = refused(&stiff, &file);
+    assert!(
+        found.contains("joint `luff`") && found.contains("armature"),
+        "{found}"
+    );
+    let slow = stiff.replace("[rig]", "[rig]\nstep_s = 0.0005");
+    assert!(Model::parse(&slow, &file).is_ok());
     let planar = Model::parse(MODEL, &file)
         .unwrap()
         .planar_only("gains hold chains");

@@ -98,6 +98,9 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     if model.slides() && model.angles == Angles::Absolute {
         return Err(rig.bad("angles", ModelReason::AbsoluteSlides));
     }
+    if let Some(reason) = in_space::stiff(&model) {
+        return Err(root.bad_table(reason));
+    }
     (model.free, model.bounds) = fit::read(&root, &model)?;
     Ok(model)
 }
