@@ -1,5 +1,6 @@
 //! A tree of rigid links in space: hinges and slides about any axis, on a fixed base.
 
+mod carried;
 mod equations;
 mod small;
 

@@ -2,7 +2,7 @@
 
 use super::field::{JointField, LinkField};
 use super::path::ParameterPath;
-use super::reason::PathReason;
+use super::path_reason::PathReason;
 use crate::effects::{self, Axis, EffectInfo};
 use crate::error::Error;
 use std::str::FromStr;

@@ -110,20 +110,17 @@ impl Plant {
             .iter_mut()
             .fold(0, |next, joint| joint.place_memory(next));
         let base = rig.base_spring.map(|spring| (spring, of_joints));
-        let senses = joints.iter().any(|j| !j.sense.is_empty());
         let mut delays_s: Vec<f64> = joints.iter().map(|joint| joint.delay_s).collect();
         delays_s.retain(|delay_s| *delay_s != 0.0);
         delays_s.sort_by(f64::total_cmp);
         delays_s.dedup();
         let offsets_s = || joints.iter().map(|joint| joint.offset_s);
         Plant {
-            slides: (model.joints.iter())
-                .map(|joint| joint.slide.is_some())
-                .collect(),
+            slides: each(model, |joint| model.joints[joint].slide.is_some()),
             rates,
             rate_readings: Vec::new(),
             rate_joints: Vec::new(),
-            senses,
+            senses: joints.iter().any(|j| !j.sense.is_empty()),
             delays_s,
             has_offsets: offsets_s().any(|offset_s| offset_s != 0.0),
             late_s: offsets_s().reduce(f64::max).unwrap_or(0.0),
@@ -135,9 +132,7 @@ impl Plant {
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
             rig,
             zero_rad: model.angle_zero.from_hanging_rad(),
-            zeros_rad: (0..joints.len())
-                .map(|joint| model.zero_rad(joint))
-                .collect(),
+            zeros_rad: each(model, |joint| model.zero_rad(joint)),
             absolute: model.angles == Angles::Absolute,
             step_s: model.step_s,
             torques_stay: joints.iter().all(JointPlan::torque_stays),
@@ -203,6 +198,10 @@ impl Plant {
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
+}
+
+fn each<T>(model: &Model, value: impl Fn(usize) -> T) -> Vec<T> {
+    (0..model.link_count()).map(value).collect()
 }
 
 /// Longest step, in parts of the time in which a motor swings against its joint by 1 rad, that

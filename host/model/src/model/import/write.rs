@@ -1,26 +1,17 @@
 //! A planar chain as a model file.
 
+mod in_space;
+
+pub(super) use in_space::{RobotName, toml_in_space};
+
 use super::planar::{PlanarChain, PlanarLink};
-use super::space::{InSpace, Locked};
-use super::tree::{Remark, TreeDrive, TreeJoint};
-use crate::dynamics::{SlideAxis, SpatialEquations, SpatialLink, SpatialTree};
+use super::tree::{Remark, TreeDrive};
 use crate::effects::{Axis, Parameter, named};
 use crate::error::{Error, Place, Result};
 use crate::model::field::POSITIVE;
-use crate::model::new_model::{LinkPlan, ModelPlan, model_toml, number, write_drive};
-use crate::model::robot::link_values;
+use crate::model::new_model::{LinkPlan, ModelPlan, model_toml};
 use std::fmt::Write as _;
 use std::path::Path;
-
-/// How a model file names a robot's.
-pub(super) struct RobotName<'a> {
-    pub file: &'a str,
-    pub sha256: &'a str,
-    pub locked: &'a [Locked],
-}
-
-/// Longest integration step of a model that names none, s.
-const USUAL_STEP_S: f64 = 0.005;
 
 /// Heaviest gravity of a model, m/s^2.
 const MOST_GRAVITY_M_S2: f64 = 100.0;
@@ -84,125 +75,6 @@ pub(super) fn toml(
         }
         _ => error,
     })
-}
-
-/// The model file of a robot in space; `robot` is what it names the robot's file, `text` that
-/// file's.
-pub(super) fn toml_in_space(
-    name: &str,
-    found: &mut InSpace,
-    format: &str,
-    named: &RobotName,
-) -> String {
-    let mut effects = String::new();
-    let mut links: Vec<PlanarLink> = (found.joints.iter())
-        .zip(&found.tree.links)
-        .map(|(joint, link)| as_listed(joint, link))
-        .collect();
-    for (index, link) in links.iter_mut().enumerate() {
-        possible_drive(link);
-        write_effects(&mut effects, index, link, format);
-    }
-    (found.left_out).extend(links.iter().flat_map(|link| link.joint.left_out.clone()));
-    let quoted = |text: &str| toml_edit::Value::from(text).to_string();
-    let mut text = format!(
-        "# A robot in space, whose shape is that of its {} file: joints and links stand here in the\n\
-         # file's order and by its names. Columns are named after the joints: mend them for your\n\
-         # logs.\n",
-        format.to_uppercase()
-    );
-    for part in &found.left_out {
-        let line = format!("Not carried: {part}").replace(char::is_control, " ");
-        let _ = writeln!(text, "# {line}");
-    }
-    let name = name.replace(char::is_control, " ");
-    let name = if name.trim().is_empty() {
-        "robot"
-    } else {
-        name.as_str()
-    };
-    let _ = write!(
-        text,
-        "\n[rig]\nname = {}\nrobot = {}\nrobot_sha256 = \"{}\"\n",
-        quoted(name),
-        quoted(named.file),
-        named.sha256
-    );
-    if !named.locked.is_empty() {
-        let mut locked = toml_edit::InlineTable::new();
-        for (joint, at) in named.locked {
-            locked.insert(joint, toml_edit::Value::from(*at));
-        }
-        let _ = writeln!(text, "locked = {locked}");
-    }
-    if let Some(step_s) = short_step_s(&found.tree, &links) {
-        let _ = writeln!(
-            text,
-            "step_s = {} # a motor brakes its link so fast: has it no rotor, no `armature`?",
-            number(step_s)
-        );
-    }
-    for (index, link) in links.iter().enumerate() {
-        let values = link_values(&found.tree, index);
-        let _ = write!(
-            text,
-            "\n[[link]] # {}\nname = {}\nmass_kg = {}\ncom_m = {} # from the joint's frame\n\
-             inertia_kg_m2 = {} # about the centre of mass, along the joint's axis\n",
-            index + 1,
-            quoted(&found.bodies[index].0),
-            number(values.mass_kg),
-            number(values.com_m),
-            number(values.inertia_kg_m2),
-        );
-        debug_assert_eq!(link.joint.name, found.joints[index].name);
-    }
-    for (index, link) in links.iter().enumerate() {
-        let plan = link_plan(link);
-        let _ = write!(
-            text,
-            "\n[[joint]] # {}\nname = {}\n",
-            index + 1,
-            quoted(&link.joint.name)
-        );
-        write_drive(&mut text, &plan);
-    }
-    text.push_str(&effects);
-    text.push_str(&log_table(&links));
-    text
-}
-
-/// The step that follows every motor's braking, s; none where the usual one does.
-fn short_step_s(tree: &SpatialTree, links: &[PlanarLink]) -> Option<f64> {
-    let inertias = SpatialEquations::new(tree).joint_inertias(&vec![0.0; tree.len()]);
-    let brakes = links.iter().zip(inertias).filter_map(|(link, inertia)| {
-        let drive = drive_figures(&link.joint.drive);
-        Some((inertia + link.joint.armature_kg_m2) * drive.speed? / drive.stall?)
-    });
-    let fastest_s = brakes.fold(f64::INFINITY, f64::min);
-    (USUAL_STEP_S > 2.0 * fastest_s).then(|| {
-        let rounded = format!("{:.0e}", fastest_s).parse().unwrap_or(fastest_s);
-        f64::max(rounded, 1e-5)
-    })
-}
-
-/// A joint of a robot in space as the writers of effects and columns take one: its angles are the
-/// file's.
-fn as_listed(joint: &TreeJoint, link: &SpatialLink) -> PlanarLink {
-    PlanarLink {
-        joint: joint.clone(),
-        body: (String::new(), joint.line),
-        reversed: false,
-        offset_rad: 0.0,
-        slide: link.slides.then_some(SlideAxis {
-            direction_rad: 0.0,
-            link_rad: 0.0,
-        }),
-        length_m: 0.0,
-        com_m: 0.0,
-        com_angle_rad: 0.0,
-        mass_kg: link.mass_kg,
-        inertia_kg_m2: 0.0,
-    }
 }
 
 /// Refuses figures of links that no model has: their bounds are those of `[[link]]` and `[rig]`.
