@@ -152,7 +152,7 @@ impl App {
                 self.emptied = Age::from(board.clock());
                 break;
             };
-            // What reads EEPROM or looks at the stack takes long: one of them, then the tick.
+            // What reads EEPROM takes long: one of them, then the tick.
             if self.take(board, byte) {
                 break;
             }

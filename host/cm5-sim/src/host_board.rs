@@ -45,8 +45,6 @@ pub struct HostBoard {
     pub byte_ns: u64,
     /// The same for a byte of EEPROM that is read, ns.
     pub eeprom_read_ns: u64,
-    /// The same for a look at how deep the stack was, ns.
-    pub stack_ns: u64,
     /// ADC code of the gyro, 0..=1023, used where no robot is attached.
     pub gyro: u16,
     /// The plan compiled into the program.
@@ -88,7 +86,6 @@ impl HostBoard {
             leds: 0,
             byte_ns: 0,
             eeprom_read_ns: 0,
-            stack_ns: 0,
             gyro: GYRO_AT_REST,
             compiled: Vec::new(),
             eeprom: vec![0xff; EEPROM_SIZE],
@@ -103,12 +100,10 @@ impl HostBoard {
     }
 
     /// Commands take as long as on the chip, where simavr measured them: 10 us for a byte from the
-    /// PC, 8.8 ms to read the 1200 bytes of a plan; and by its instructions (50 cycles for 8 bytes
-    /// of which 950 are unused), 0.4 ms to look at the stack.
+    /// PC, 8.8 ms to read the 1200 bytes of a plan.
     pub fn take_time(&mut self) {
         self.byte_ns = 10_000;
         self.eeprom_read_ns = 7_300;
-        self.stack_ns = 400_000;
     }
 
     /// Since power came, ns.
@@ -297,7 +292,6 @@ impl Board for HostBoard {
     }
 
     fn stack(&mut self) -> (u16, u16) {
-        self.now_ns += self.stack_ns;
         (0, 0)
     }
 }

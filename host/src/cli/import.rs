@@ -40,7 +40,8 @@ pub struct ImportArgs {
     #[arg(long, conflicts_with = "joints")]
     space: bool,
     /// Joint of a robot in space that is held, and where, rad or m
-    #[arg(long, num_args = 1.., value_name = "NAME=VALUE", value_parser = locked, requires = "space")]
+    #[arg(long, num_args = 1.., value_name = "NAME=VALUE", requires = "space")]
+    #[arg(value_parser = locked)]
     lock: Vec<Locked>,
     /// Drive joints without an actuator by a torque; they are passive without
     #[arg(long)]

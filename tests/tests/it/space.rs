@@ -228,7 +228,8 @@ const CRANE: &str = r#"<robot name="crane"><link name="base"/>
 <inertia ixx="2e-3" iyy="2e-3" izz="3e-4" ixy="1e-4" ixz="0" iyz="0"/></inertial></link>
 <link name="head"><inertial><origin xyz="0.03 0 -0.05"/><mass value="0.2"/>
 <inertia ixx="5e-4" iyy="4e-4" izz="3e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>
-<joint name="slew" type="continuous"><parent link="base"/><child link="mast"/><axis xyz="0 0 1"/></joint>
+<joint name="slew" type="continuous"><parent link="base"/><child link="mast"/>
+<axis xyz="0 0 1"/></joint>
 <joint name="luff" type="continuous"><parent link="mast"/><child link="boom"/>
 <origin xyz="0.1 0 -0.1" rpy="0 0 0.3"/><axis xyz="0 1 0"/></joint>
 <joint name="roll" type="continuous"><parent link="boom"/><child link="head"/>
@@ -337,4 +338,26 @@ fn what_a_robot_in_space_lacks_is_added_and_the_error_falls() {
     };
     let (before, after) = (rms("crane.toml"), rms("new/better.toml"));
     assert!(after < 0.2 * before, "{before} {after}");
+    // A link's mass that is off is found again, and the same figures in every session.
+    let better = std::fs::read_to_string(at.join("new/better.toml")).unwrap();
+    let heavier = better.replace("mass_kg = 0.2\n", "mass_kg = 0.25\n");
+    assert_ne!(heavier, better);
+    std::fs::write(at.join("new/heavier.toml"), heavier).unwrap();
+    let logs = ["a.csv", "b.csv", "c.csv"];
+    let fit = [
+        "fit",
+        "new/heavier.toml",
+        "-o",
+        "fitted.toml",
+        "--free",
+        "link3.mass_kg",
+    ];
+    run(at, &[&fit[..], &logs].concat());
+    let found = Model::load(&at.join("fitted.toml")).unwrap().links[2].mass_kg;
+    assert!((found / 0.2 - 1.0).abs() < 0.02, "{found}");
+    let (data, _) = run(
+        at,
+        &[&["drift", "fitted.toml", "--json"][..], &logs].concat(),
+    );
+    assert!(data.is_object(), "{data}");
 }

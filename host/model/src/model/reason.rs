@@ -150,6 +150,9 @@ pub enum ModelReason {
         /// Longest integration step, s.
         step_s: f64,
     },
+    /// A gyro of a robot in space.
+    #[error("a gyro feels joints whose axes are parallel, and this is a robot in space")]
+    GyroInSpace,
     /// A payload of a robot in space.
     #[error("a robot in space has no payload column yet")]
     PayloadInSpace,
@@ -312,8 +315,9 @@ impl Reason for ModelReason {
                     .into();
             }
             StiffJoint { .. } => {
-                "add the rotor's inertia, `kind = \"armature\"`, or write a shorter `step_s` in [rig]"
+                "add the rotor's inertia, `kind = \"armature\"`, or write a shorter `step_s`"
             }
+            GyroInSpace => "remove `gyro`; a joint's own rate is a `tachometer`",
             PayloadInSpace => "remove it; put the mass into a link of the robot's file",
             AbsoluteSlides => "write `angles = \"relative\"`: each from the link before",
             SlideUnmeasured => {

@@ -8,6 +8,7 @@ use super::reason::ModelReason;
 use super::{Link, Model};
 use crate::dynamics::{SpatialLink, SpatialTree};
 use crate::error::{Error, Result};
+use nalgebra::Vector3;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
@@ -114,16 +115,18 @@ pub(super) fn fingerprint(text: &str) -> String {
 }
 
 impl Model {
-    /// The tree of a robot in space with this model's own values: a mass in place of the file's, the
-    /// centre of mass so far from the joint's frame in the file's direction, and moments of inertia
+    /// The tree of a robot in space with this model's own values: a mass in place of the file's,
+    /// the centre of mass so far from the joint's frame in the file's direction, and moments of inertia
     /// in the file's proportions, so that they stay those of a body. None of a planar chain.
     pub fn tree(&self) -> Option<SpatialTree> {
         let robot = self.robot.as_ref()?;
         let mut tree = robot.tree.clone();
-        let length = tree.gravity_m_s2.norm();
-        if length > 0.0 {
-            tree.gravity_m_s2 *= self.gravity_m_s2 / length;
-        }
+        // Down is what the file says, or -z where it has no gravity.
+        let down = tree
+            .gravity_m_s2
+            .try_normalize(0.0)
+            .unwrap_or(-Vector3::z());
+        tree.gravity_m_s2 = down * self.gravity_m_s2;
         for (index, (link, own)) in tree.links.iter_mut().zip(&self.links).enumerate() {
             let file = robot.link(index);
             link.mass_kg = own.mass_kg;

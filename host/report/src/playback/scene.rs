@@ -87,9 +87,8 @@ pub struct Input {
 }
 
 impl Scene {
-    /// The measured `motions` of `model`.
+    /// The measured `motions` of `model`, a planar chain.
     pub fn measured(model: &Model, motions: &[Motion]) -> Scene {
-        debug_assert!(!model.is_in_space(), "links are drawn in their plane");
         let passive = |joint: usize| matches!(model.joints[joint].drive, Drive::Passive);
         let on_bar = passive(0);
         Scene {

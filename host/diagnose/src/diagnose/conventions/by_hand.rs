@@ -156,7 +156,8 @@ fn is_held(model: &Model, still: &Still, run: &Range<usize>) -> bool {
 /// round nearer to its rest, where less pulls it, and swung on; or it stopped from full motion
 /// where more pulls it than friction took from its swings.
 fn is_caught(model: &Model, still: &Still, run: &Range<usize>) -> bool {
-    if model.link_count() != 1 || !is_off(model, still.motion, &(0..still.motion.len())) {
+    let is_arm = model.link_count() == 1 && !model.is_in_space();
+    if !is_arm || !is_off(model, still.motion, &(0..still.motion.len())) {
         return false;
     }
     let swing = Swing {

@@ -3,8 +3,8 @@
 use super::super::field::LinkField;
 use super::super::reader::Table;
 use super::super::reason::ModelReason;
-use super::super::{Joint, Link, Model, Robot};
-use super::{NOT_NEGATIVE, drive};
+use super::super::{Joint, Link, Model, RateSensor, Robot};
+use super::{EITHER_SIGN, NOT_NEGATIVE, drive};
 use crate::dynamics::{SlideAxis, SpatialEquations};
 use crate::effects::Axis;
 use crate::error::Result;
@@ -23,7 +23,7 @@ pub(super) fn links(root: &Table, robot: &Robot) -> Result<Vec<Link>> {
         };
         Ok(Link {
             length_m: file.length_m,
-            com_m: number(LinkField::Com, NOT_NEGATIVE, file.com_m)?,
+            com_m: number(LinkField::Com, EITHER_SIGN, file.com_m)?,
             mass_kg: number(LinkField::Mass, NOT_NEGATIVE, file.mass_kg)?,
             inertia_kg_m2: number(LinkField::Inertia, NOT_NEGATIVE, file.inertia_kg_m2)?,
         })
@@ -55,8 +55,23 @@ pub(super) fn joints(root: &Table, robot: &Robot) -> Result<Vec<Joint>> {
 /// Runge-Kutta of fourth order grows where a speed decays in less than the step's 2.8th part.
 const STIFF: f64 = 2.5;
 
+/// Refuses what no robot in space can have: a rate that is the sum of joints about parallel axes,
+/// and a motor that brakes faster than a step can follow.
+pub(super) fn check(root: &Table, model: &Model) -> Result<()> {
+    if !model.is_in_space() {
+        return Ok(());
+    }
+    let log = root.required_table("log")?;
+    for (table, joint) in log.tables("joint")?.iter().zip(&model.log.joints) {
+        if joint.rate.is_some() && joint.rate_sensor == RateSensor::Gyro {
+            return Err(table.bad_key("gyro", ModelReason::GyroInSpace));
+        }
+    }
+    stiff(model).map_or(Ok(()), |reason| Err(root.bad_table(reason)))
+}
+
 /// Why a step cannot follow some joint, if it cannot: at the pose in which all joints are at 0.
-pub(super) fn stiff(model: &Model) -> Option<ModelReason> {
+fn stiff(model: &Model) -> Option<ModelReason> {
     let tree = model.rig(false).tree?;
     let inertias = SpatialEquations::new(&tree).joint_inertias(&vec![0.0; tree.len()]);
     (model.joints.iter().zip(inertias).enumerate()).find_map(|(index, (joint, inertia))| {

@@ -98,9 +98,7 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     if model.slides() && model.angles == Angles::Absolute {
         return Err(rig.bad("angles", ModelReason::AbsoluteSlides));
     }
-    if let Some(reason) = in_space::stiff(&model) {
-        return Err(root.bad_table(reason));
-    }
+    in_space::check(&root, &model)?;
     (model.free, model.bounds) = fit::read(&root, &model)?;
     Ok(model)
 }

@@ -38,9 +38,9 @@ pub(in crate::model::import) fn toml_in_space(
     }
     (found.left_out).extend(links.iter().flat_map(|link| link.joint.left_out.clone()));
     let mut text = format!(
-        "# A robot in space, whose shape is that of its {} file: joints and links stand here in the\n\
-         # file's order and by its names. Columns are named after the joints: mend them for your\n\
-         # logs.\n",
+        "# A robot in space, whose shape is that of its {} file: joints and links stand here in\n\
+         # the file's order and by its names. Columns are named after the joints: mend them for\n\
+         # your logs.\n",
         format.to_uppercase()
     );
     for part in &found.left_out {
