@@ -3,11 +3,10 @@
 //! The robots are drawn: axes and frames turned in space, centres of mass beside the plane, joints
 //! that count either way, links of several fixed bodies, branches.
 
-use crate::simulators::{answers, python};
+use crate::simulators::{Case, largest_difference, python};
 use handstand::Model;
 use handstand::dynamics::Workspace;
 use handstand::model::import::{ImportPlan, import};
-use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -265,7 +264,7 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let (mut cases, mut models) = (Vec::new(), Vec::new());
+    let (mut cases, mut models, mut compared) = (Vec::new(), Vec::new(), [0, 0]);
     let mut slides = 0;
     for robot in 0..ROBOTS + SLIDING {
         let mut draws = Draws(robot);
@@ -302,31 +301,19 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
             .count();
         let mut many =
             |size: f64| -> Vec<f64> { names.iter().map(|_| size * draws.next()).collect() };
-        let states: Vec<[Vec<f64>; 3]> = (0..STATES)
-            .map(|_| [many(3.0), many(5.0), many(4.0)])
-            .collect();
-        let written: Vec<Value> = states
-            .iter()
-            .map(|[q, dq, tau]| json!({ "q": q, "dq": dq, "tau": tau }))
-            .collect();
-        cases.push(json!({ "file": file, "joints": names, "states": written }));
-        models.push((model, states));
+        let states = (0..STATES).map(|_| [many(3.0), many(5.0), many(4.0)]);
+        let states = states.collect();
+        cases.push(Case {
+            file,
+            joints: names,
+            states,
+        });
+        models.push(model);
+        compared[robot as usize % 2] += 1;
     }
-    let theirs = answers(&python, "forward_dynamics.py", &cases);
-    let (mut compared, mut worst) = ([0, 0], 0.0f64);
-    for (robot, ((model, states), theirs)) in models.iter().zip(theirs).enumerate() {
-        let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs).unwrap();
-        compared[robot % 2] += 1;
-        for ([q, dq, tau], theirs) in states.iter().zip(theirs) {
-            let ours = accelerations(model, q, dq, tau);
-            let size = theirs.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
-            for (ours, theirs) in ours.iter().zip(&theirs) {
-                let off = (ours - theirs).abs() / size;
-                worst = worst.max(off);
-                assert!(off < 1e-9, "robot {robot}: {ours} instead of {theirs}");
-            }
-        }
-    }
+    let worst = largest_difference(&python, &cases, |robot, [q, dq, tau]| {
+        accelerations(&models[robot], q, dq, tau)
+    });
     println!(
         "{} by Pinocchio, {} by MuJoCo, largest difference {worst:.1e}",
         compared[0], compared[1]

@@ -3,13 +3,13 @@
 
 use crate::import::Draws;
 use crate::program;
-use crate::simulators::{answers, python};
+use crate::simulators::{Case, State, largest_difference, python};
 use handstand::Model;
 use handstand::dynamics::{SpatialEquations, SpatialWorkspace};
 use handstand::model::import::{ImportPlan, SpacePlan, import};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const TREES: u64 = 200;
@@ -128,7 +128,7 @@ fn model(text: &str, file: &Path, locked: &[String]) -> (Model, Vec<String>) {
 }
 
 /// Accelerations by the model's rig.
-fn accelerations(model: &Model, [q, dq, tau]: &[Vec<f64>; 3]) -> Vec<f64> {
+fn accelerations(model: &Model, [q, dq, tau]: &State) -> Vec<f64> {
     let tree = model.rig(false).tree.expect("a robot in space");
     let mut out = vec![0.0; q.len()];
     let held = vec![false; q.len()];
@@ -138,38 +138,24 @@ fn accelerations(model: &Model, [q, dq, tau]: &[Vec<f64>; 3]) -> Vec<f64> {
 }
 
 /// Compares at states drawn; the largest difference, as a share of the largest acceleration.
-fn compare(cases: Vec<(std::path::PathBuf, Model, Vec<String>)>, seed: u64) -> Option<f64> {
+fn compare(robots: Vec<(PathBuf, Model, Vec<String>)>, seed: u64) -> Option<f64> {
     let python = python()?;
     let mut draws = Draws(seed);
-    let (mut asked, mut states) = (Vec::new(), Vec::new());
-    for (file, _, names) in &cases {
+    let (mut cases, mut models) = (Vec::new(), Vec::new());
+    for (file, model, joints) in robots {
         let mut many =
-            |size: f64| -> Vec<f64> { names.iter().map(|_| size * draws.next()).collect() };
-        let own: Vec<[Vec<f64>; 3]> = (0..STATES)
-            .map(|_| [many(3.0), many(5.0), many(4.0)])
-            .collect();
-        let written: Vec<Value> = (own.iter())
-            .map(|[q, dq, tau]| json!({ "q": q, "dq": dq, "tau": tau }))
-            .collect();
-        asked.push(json!({ "file": file, "joints": names, "states": written }));
-        states.push(own);
+            |size: f64| -> Vec<f64> { joints.iter().map(|_| size * draws.next()).collect() };
+        let states = (0..STATES).map(|_| [many(3.0), many(5.0), many(4.0)]);
+        let states = states.collect();
+        cases.push(Case {
+            file,
+            joints,
+            states,
+        });
+        models.push(model);
     }
-    let mut worst = 0.0f64;
-    let theirs = answers(&python, "forward_dynamics.py", &asked);
-    for (((file, model, _), states), theirs) in cases.iter().zip(states).zip(theirs) {
-        let theirs: Vec<Vec<f64>> = serde_json::from_value(theirs).unwrap();
-        assert_eq!(theirs.len(), STATES, "{}", file.display());
-        for (state, theirs) in states.iter().zip(theirs) {
-            let ours = accelerations(model, state);
-            let size = theirs.iter().fold(1.0, |most: f64, a| most.max(a.abs()));
-            for (ours, theirs) in ours.iter().zip(&theirs) {
-                let off = (ours - theirs).abs() / size;
-                worst = worst.max(off);
-                assert!(off < 1e-9, "{}: {ours} instead of {theirs}", file.display());
-            }
-        }
-    }
-    Some(worst)
+    let ours = |robot: usize, state: &State| accelerations(&models[robot], state);
+    Some(largest_difference(&python, &cases, ours))
 }
 
 #[test]
