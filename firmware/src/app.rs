@@ -53,6 +53,8 @@ pub struct App {
     longest_silence_us: u32,
     /// Since nothing from the PC was left to be taken: what is taken now arrived later.
     emptied: Age,
+    /// Whether nothing was left to be taken since the last tick.
+    is_emptied: bool,
     /// Since torque was switched off; old where somebody else may have switched it on.
     off: Age,
     /// Arming that has begun: the limits are written and read back before torque comes on.
@@ -95,6 +97,7 @@ impl App {
             life: Age::NEVER,
             longest_silence_us: 0,
             emptied: Age::from(board.clock()),
+            is_emptied: false,
             off: Age::from(board.clock()),
             arming: None,
             gyro: 0,
@@ -148,8 +151,14 @@ impl App {
     fn pump<B: Board>(&mut self, board: &mut B) {
         // Bounded, so that a babbling line cannot starve the tick.
         for _ in 0..64 {
+            // While torque is on a command does not begin just before a tick: it would be late.
+            // Behind a tick as long as its period it does, or no word of the host's would count.
+            if self.is_emptied && self.is_armed() && self.times.is_near(board.clock()) {
+                break;
+            }
             let Some(byte) = board.link_receive() else {
                 self.emptied = Age::from(board.clock());
+                self.is_emptied = true;
                 break;
             };
             // What reads EEPROM takes long: one of them, then the tick.
@@ -236,6 +245,7 @@ impl App {
             }
         }
         self.account(board, due);
+        self.is_emptied = false;
         // Between ticks, as commands: what it takes shows where it makes the next tick late.
         self.finish_arming(board);
     }

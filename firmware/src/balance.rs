@@ -37,8 +37,11 @@ pub struct Balance {
     /// Angles at which the robot balances beside the operating point: the first link's in its
     /// steps, the joints' as readings.
     compensation: [i16; 3],
-    /// The first link's angle, in 1/10 of its step: a rate step lasts 1/10 angle step per tick.
-    angle: i32,
+    /// The first link's angle, in its steps.
+    angle: i16,
+    /// Of a gyro, the sum of its rates, in 1/10 of an angle step: a rate step lasts that long per
+    /// tick. Not divided for the host's angle: it takes the AVR 40 us.
+    rate_sum: i32,
     rate: i16,
     /// The gyro's code at rest, times 2^16: the mean of those before arming.
     zero: i32,
@@ -73,6 +76,7 @@ impl Balance {
         applied: [AppliedInput::NOTHING; 2],
         compensation: [0; 3],
         angle: 0,
+        rate_sum: 0,
         rate: 0,
         zero: 0,
         rest: attitude::Rest::NONE,
@@ -107,7 +111,8 @@ impl Balance {
         self.rate = 0;
         self.compensation = compensation(&self.plan.moments);
         let [angle, ..] = self.point();
-        self.angle = i32::from(angle) * 10;
+        self.angle = angle;
+        self.rate_sum = i32::from(angle) * 10;
     }
 
     /// The first link's angle, both joints' in position codes, the first link's rate.
@@ -125,7 +130,7 @@ impl Balance {
         if self.missed >= LOST_AFTER {
             return Err(Stop::ServoLost);
         }
-        let angle = (self.angle / 10) as i16;
+        let angle = self.angle;
         let [x0, ..] = self.point();
         if angle.abs_diff(x0) > self.plan.range {
             return Err(Stop::Fallen);

@@ -46,6 +46,9 @@ pub const ROUND_US: u16 = 14_000;
 /// needs about 2 ms.
 pub const LAST_RETRY_US: u16 = 7_600;
 
+/// Longest time that a command of the host's takes while torque is on, us.
+pub const COMMAND_US: u16 = 250;
+
 /// Time without a sign of life from the host after which an armed robot goes soft, us. It is
 /// noticed at the next tick, at most [`LONGEST_PERIOD_US`] later.
 pub const SILENT_US: u32 = 80_000;

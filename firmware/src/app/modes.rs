@@ -90,13 +90,6 @@ impl App {
             Err(Stop::JointSpeed) => return self.give_up(board, Cause::JointSpeed),
             Err(Stop::ServoLost) => return self.give_up(board, Cause::ServoLost),
         };
-        let Some(armed) = self.state.armed_mut() else {
-            return;
-        };
-        if armed.onset == Onset::Balance {
-            // It was held until now: the estimate begins here, and not where it was armed.
-            self.balance.begin(&readings);
-        }
         let commands = self.balance.commands(&readings);
         let law_us = since_us(board, law_started);
         self.times.longest_law_us = self.times.longest_law_us.max(law_us);
@@ -123,11 +116,11 @@ impl App {
                 armed.onset = Onset::Goals(0);
             }
             Onset::Goals(from) => {
-                let next = self.servos.hold_half(board, from, balancing);
+                let next = self.servos.hold_third(board, from, balancing);
                 armed.onset = next.map_or(Onset::Others(0), Onset::Goals);
             }
             Onset::Others(from) => {
-                let next = self.servos.switch_on_half(board, from);
+                let next = self.servos.switch_on_third(board, from);
                 armed.onset = next.map_or(Onset::Done, Onset::Others);
             }
             Onset::Torque | Onset::Done => {}

@@ -70,9 +70,9 @@ pub(super) enum Goal {
 pub(super) enum Onset {
     /// It comes on in those that balance, with the law's first command.
     Balance,
-    /// The others get goals where they stand, half of the servo list from this place on.
+    /// The others get goals where they stand, a third of the servo list from this place on.
     Goals(u8),
-    /// The others have torque, too, half of the list from this place on.
+    /// The others have torque, too, a third of the list from this place on.
     Others(u8),
     /// While streaming all have their goals, and get torque in the next tick.
     Torque,

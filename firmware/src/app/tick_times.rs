@@ -1,7 +1,7 @@
 //! How long ticks take, and whether they come in time.
 
 use crate::board::{Board, since_us};
-use crate::design::{CLOCK_PER_US, TICK_US};
+use crate::design::{CLOCK_PER_US, COMMAND_US, TICK_US};
 
 /// The account of ticks, times in us.
 #[derive(Debug, Default)]
@@ -36,6 +36,12 @@ impl TickTimes {
         }
         self.due = Some(due.wrapping_add(PERIOD));
         due
+    }
+
+    /// Whether the next tick is due before a command that begins now would end.
+    pub fn is_near(&self, now: u16) -> bool {
+        const NEAR: u16 = COMMAND_US * CLOCK_PER_US;
+        self.due.is_some_and(|due| due.wrapping_sub(now) < NEAR)
     }
 
     /// What the tick took since it was due.
@@ -103,6 +109,19 @@ mod tests {
                 "{us}"
             );
         }
+    }
+
+    #[test]
+    fn a_tick_is_near_from_a_commands_time_before_it_until_it_is_due() {
+        const NEAR: u16 = COMMAND_US * CLOCK_PER_US;
+        let mut times = TickTimes::default();
+        assert!(!times.is_near(100), "none is due before the first");
+        times.begin(100);
+        let due = 100 + PERIOD;
+        for (before, is_near) in [(PERIOD, false), (NEAR, false), (NEAR - 1, true), (0, true)] {
+            assert_eq!(times.is_near(due - before), is_near, "{before}");
+        }
+        assert!(!times.is_near(due + 1));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A queue of bytes between one interrupt and the program, without locks.
 
 use core::cell::UnsafeCell;
+use core::ptr::copy_nonoverlapping;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 /// A byte that an interrupt and the program share; where both change it, never at the same time.
@@ -87,17 +88,18 @@ impl<const N: usize> Ring<N> {
     #[inline(always)]
     pub fn push_all(&self, bytes: &[u8]) -> usize {
         let count = bytes.len().min(self.room());
-        let mut head = self.head.get();
-        for byte in bytes.iter().take(count) {
-            // SAFETY: `head` is below N, and there is room for these: the consumer does not read
-            // their slots before `head` moves.
-            unsafe {
-                (self.bytes.get() as *mut u8)
-                    .add(usize::from(head))
-                    .write_volatile(*byte)
-            };
-            head = head.wrapping_add(1) & Self::MASK;
+        let head = self.head.get();
+        let to_end = N - usize::from(head);
+        let slots = self.bytes.get() as *mut u8;
+        // Up to the ring's end, then on from its beginning: one place at a time costs twice as much.
+        let (first, rest) = bytes.split_at(count.min(to_end));
+        // SAFETY: `head` is below N, these are at most N - `head` and then fewer than `head`, and
+        // there is room for these: the consumer does not read their slots before `head` moves.
+        unsafe {
+            copy_nonoverlapping(first.as_ptr(), slots.add(usize::from(head)), first.len());
+            copy_nonoverlapping(rest.as_ptr(), slots, count - first.len());
         }
+        let head = head.wrapping_add(count as u8) & Self::MASK;
         compiler_fence(Ordering::Release);
         self.head.set(head);
         count

@@ -47,7 +47,7 @@ impl Balance {
     pub fn sense(&mut self, host: Attitude, gyro: u16) {
         if self.plan.gyro.from_host {
             self.rate = host.rate;
-            self.angle = i32::from(host.angle) * 10;
+            self.angle = host.angle;
             return;
         }
         let code = i32::from(gyro as i16) << CODE_PLACES;
@@ -58,8 +58,9 @@ impl Balance {
         let rate = code.wrapping_mul(i32::from(self.plan.gyro.scale)) >> (4 + CODE_PLACES);
         self.rate = rate.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
         // 1e-3 rad/s for 10 ms are 1e-5 rad: 1/10 of the angle's step.
-        let angle = self.angle.saturating_add(i32::from(self.rate));
-        self.angle = angle.clamp(-320_000, 320_000);
+        let sum = self.rate_sum.saturating_add(i32::from(self.rate));
+        self.rate_sum = sum.clamp(-320_000, 320_000);
+        self.angle = (self.rate_sum / 10) as i16;
     }
 
     /// Whether the host must say the first link's attitude.

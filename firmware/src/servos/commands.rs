@@ -129,11 +129,11 @@ impl Servos {
         }
     }
 
-    /// Torque on in those that are commanded of half of the servo list, from this place on. The
+    /// Torque on in those that are commanded of a third of the servo list, from this place on. The
     /// place to go on from; none at the end of the list.
-    pub fn switch_on_half<B: Board>(&mut self, board: &mut B, from: u8) -> Option<u8> {
-        let (half, next) = self.half(from);
-        self.write_to(board, Sent::TorqueOn, half, Whom::All);
+    pub fn switch_on_third<B: Board>(&mut self, board: &mut B, from: u8) -> Option<u8> {
+        let (third, next) = self.third(from);
+        self.write_to(board, Sent::TorqueOn, third, Whom::All);
         self.has_torque = next.is_none();
         next
     }
@@ -148,17 +148,17 @@ impl Servos {
         self.hold_those(board, ALL, Whom::All);
     }
 
-    /// Has those that are commanded but these stay where they stand now, in half of the servo list,
+    /// Has those that are commanded but these stay where they stand now, in a third of the servo list,
     /// from this place on. The place to go on from; none at the end of the list.
-    pub fn hold_half<B: Board>(&mut self, board: &mut B, from: u8, but: Driven) -> Option<u8> {
-        let (half, next) = self.half(from);
-        self.hold_those(board, half, Whom::AllBut(but));
+    pub fn hold_third<B: Board>(&mut self, board: &mut B, from: u8, but: Driven) -> Option<u8> {
+        let (third, next) = self.third(from);
+        self.hold_those(board, third, Whom::AllBut(but));
         next
     }
 
-    /// The half of the servo list that begins at this place, and the place behind it, if one is.
-    fn half(&self, from: u8) -> (Part, Option<u8>) {
-        let places = self.count.div_ceil(2);
+    /// The a third of the servo list that begins at this place, and the place behind it, if one is.
+    fn third(&self, from: u8) -> (Part, Option<u8>) {
+        let places = self.count.div_ceil(3);
         let next = Some(from.saturating_add(places)).filter(|next| *next < self.count);
         (Part { from, places }, next)
     }

@@ -129,9 +129,21 @@ impl HostBoard {
         (*ends <= self.now_ns).then(|| self.to_pc.pop_front())?
     }
 
+    /// Bytes that the PC sent and the program has not taken.
+    fn unread(&self) -> usize {
+        self.from_pc.len() + self.waiting.len()
+    }
+
+    /// Whether there is a byte for the program to take.
+    fn has_unread(&self) -> bool {
+        let next = self.from_pc.front();
+        !self.waiting.is_empty() || next.is_some_and(|(ends, _)| *ends <= self.now_ns)
+    }
+
     /// Runs until `until_ns`, or until a byte has arrived at the PC if `until_byte`.
     pub fn run(&mut self, app: &mut App, until_ns: u64, until_byte: bool) {
         while !self.dead {
+            let before = (self.now_ns, self.unread());
             app.run(self);
             self.bus.advance(self.now_ns);
             let to_pc = self.to_pc.front().map(|(ends, _)| *ends);
@@ -139,8 +151,10 @@ impl HostBoard {
             if self.now_ns >= until_ns || (until_byte && has_arrived) {
                 return;
             }
-            if self.now_ns >= self.next_tick_ns || !self.waiting.is_empty() {
+            let goes_on = self.has_unread() && before != (self.now_ns, self.unread());
+            if self.now_ns >= self.next_tick_ns || goes_on {
                 // A tick was longer than its period, or a command took long: it goes on at once.
+                // Where nothing happened although bytes wait, they wait for the next tick.
                 continue;
             }
             let next = [

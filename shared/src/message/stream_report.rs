@@ -39,7 +39,7 @@ impl StreamReport {
     /// it being `before`; none where it is not known. While balancing, it comes on with the law's
     /// first command and goes off where the law gives up: after the reading, while `condition` is
     /// that of the tick's end, so that a report that was lost leaves it open. Servos that do not
-    /// balance have it up to four ticks later.
+    /// balance have it up to six ticks later.
     pub fn torque_was_on(&self, before: Option<&StreamReport>) -> Option<bool> {
         let last = before.map(|before| before.condition);
         let is_next = before.is_some_and(|before| self.tick == before.tick.wrapping_add(1));

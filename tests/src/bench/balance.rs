@@ -30,10 +30,6 @@ pub const LONGEST_TICK_US: u16 = {
     longest
 };
 
-/// The same while torque comes on for balancing, us: the estimate begins in its first tick, which
-/// predicts nothing while servos are awaited, and goals and torque of the others follow.
-pub const LONGEST_ONSET_US: u16 = handstand_firmware::design::TICK_US / 100 * 62;
-
 /// Where the CM-5 has the first link's attitude from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {

@@ -25,8 +25,7 @@ pub use ages::{Ages, Spread, ages};
 pub use handstand_cm5_sim::{SimulatedCm5, VirtualCm5};
 
 pub use balance::{
-    Balanced, Conditions, LONGEST_ONSET_US, LONGEST_TICK_US, Source, Tick, arm_balance, balance,
-    plan,
+    Balanced, Conditions, LONGEST_TICK_US, Source, Tick, arm_balance, balance, plan,
 };
 #[cfg(simavr)]
 pub use boot::{Boot, boot, eeprom_with, noise};

@@ -92,7 +92,7 @@ struct Reference<'a> {
     /// Where the robot balances beside the operating point: first link's angle, joints' fine.
     balance: [i16; 3],
     velocities: [velocity::Memory; 2],
-    estimate: Option<observer::Memory>,
+    estimate: observer::Memory,
     applied: [AppliedInput; 2],
     /// Of a gyro, 1e-5 rad.
     angle: i32,
@@ -113,7 +113,7 @@ impl<'a> Reference<'a> {
             plan,
             balance: balance.map(|steps| steps as i16),
             velocities: [velocity::Memory::NONE; 2],
-            estimate: None,
+            estimate: observer::Memory::ZERO,
             applied: [AppliedInput::NOTHING; 2],
             angle: 0,
         };
@@ -152,6 +152,26 @@ impl<'a> Reference<'a> {
         ((self.angle / 10) as i16, rate as i16)
     }
 
+    /// As an observer sees them: of a gyro the angle from equilibrium.
+    fn seen(&self, (angle, rate): (i16, i16), joints: [i16; 2]) -> [i16; 4] {
+        let from_host = self.plan.gyro.from_host;
+        let lean = if from_host { 0 } else { self.balance[0] };
+        let fine = |q: i16| q << FINE;
+        [angle - lean, fine(joints[0]), fine(joints[1]), rate]
+    }
+
+    /// The estimate begins at rest at these, the last readings before torque comes on.
+    fn begin(&mut self, sensed: (i16, i16), joints: [i16; 2]) {
+        let readings = self.seen(sensed, joints);
+        let mut balance = self.balance;
+        if !self.plan.gyro.from_host {
+            balance[0] = 0;
+        }
+        if let Law::Observer(observer) = &self.plan.law {
+            observer.start(&mut self.estimate, &readings, balance);
+        }
+    }
+
     /// What shoulder and hip are commanded.
     fn commands(
         &mut self,
@@ -175,27 +195,15 @@ impl<'a> Reference<'a> {
                 control(table, &states)
             }
             Law::Observer(observer) => {
-                let from_host = self.plan.gyro.from_host;
-                let lean = if from_host { 0 } else { self.balance[0] };
-                let fine = |q: i16| q << FINE;
-                let readings = [angle - lean, fine(joints[0]), fine(joints[1]), rate];
-                let estimate = self.estimate.get_or_insert_with(|| {
-                    let mut memory = observer::Memory::ZERO;
-                    let mut balance = self.balance;
-                    if !from_host {
-                        balance[0] = 0;
-                    }
-                    observer.start(&mut memory, &readings, balance);
-                    memory
-                });
+                let readings = self.seen((angle, rate), joints);
                 let heard = [true, is_heard[0], is_heard[1], true];
-                observer.raw_command_of(estimate, &readings, heard)
+                observer.raw_command_of(&mut self.estimate, &readings, heard)
             }
         };
         let input: [i16; 2] =
             std::array::from_fn(|i| self.plan.joints[i].apply(&mut self.applied[i], raw[i]));
-        if let (Law::Observer(observer), Some(estimate)) = (&self.plan.law, &mut self.estimate) {
-            observer.update(estimate, input);
+        if let Law::Observer(observer) = &self.plan.law {
+            observer.update(&mut self.estimate, input);
         }
         std::array::from_fn(|i| self.plan.joints[i].command(input[i]))
     }
@@ -246,6 +254,8 @@ fn compare(cm5: &mut VirtualCm5, plan: &Plan, random: &mut ChaCha8Rng) -> usize 
     assert_eq!(cm5.app.condition(), Condition::BalanceArmed, "{plan:?}");
     let mut none = 0;
     let mut heard = [angles[1], angles[2]];
+    let sensed = reference.sense(attitude, ZERO);
+    reference.begin(sensed, heard);
     for tick in 0..60 {
         // The hip's servo is silent for two ticks.
         let is_heard = [true, !(20..22).contains(&tick)];

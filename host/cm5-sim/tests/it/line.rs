@@ -3,7 +3,9 @@
 use super::rig::*;
 use handstand_cm5_sim::{Bus, HostBoard, SimulatedCm5, VirtualCm5};
 use handstand_firmware::board::Board as _;
+use handstand_firmware::design::{COMMAND_US, TICK_US};
 use handstand_firmware::link::Link;
+use handstand_shared::control_table::RETURN_DELAY;
 use handstand_shared::frame::MAX_FRAME;
 use handstand_shared::message::*;
 
@@ -180,4 +182,30 @@ fn nothing_is_armed_under_a_button_that_is_held_down() {
     cm5.board.buttons = 0;
     say(&mut cm5, &Command::KeepAlive, 50);
     assert_eq!(ask(&mut cm5, &arm_with(token)), Some(Ok(())));
+}
+
+/// Ticks may last from less than their period to more, those that end just before the next one
+/// among them.
+#[test]
+fn a_word_counts_however_long_ticks_are() {
+    let mut lengths_us = Vec::new();
+    let answer_after = |cm5: &mut VirtualCm5, delay: u16| {
+        for id in 1..=18 {
+            cm5.bus().servo(id).unwrap().set(RETURN_DELAY, delay);
+        }
+    };
+    for delay in 130..170 {
+        let mut cm5 = VirtualCm5::new();
+        // Where ticks are longer it is not armed.
+        answer_after(&mut cm5, 130);
+        arm(&mut cm5);
+        answer_after(&mut cm5, delay);
+        say(&mut cm5, &Command::KeepAlive, 100);
+        cm5.send(&Command::Disarm);
+        cm5.run_ms(40.0);
+        assert!(!cm5.app.is_armed(), "delay {delay}");
+        lengths_us.push(telemetry(&mut cm5).longest_tick_us);
+    }
+    let near = |length: &&u16| (TICK_US - COMMAND_US..TICK_US).contains(length);
+    assert!(lengths_us.iter().filter(near).count() > 2, "{lengths_us:?}");
 }

@@ -215,8 +215,8 @@ pub(super) fn balancing(args: &Args, built: Option<&Built>) -> Vec<Row> {
             "{least} to {longest} us in {starts} starts, {:.1} % of the period, the law {law} us, {overruns} overruns",
             100.0 * share
         ),
-        limit: "6.2 ms, 62 % of the period, as torque comes on",
-        holds: Some(longest <= handstand_tests::bench::LONGEST_ONSET_US && overruns == 0),
+        limit: "6 ms, 60 % of the period",
+        holds: Some(longest <= handstand_tests::bench::LONGEST_TICK_US && overruns == 0),
         values: json!({"longest_tick_us": longest, "longest_law_us": law, "overruns": overruns, "starts": starts}),
     }];
     rows.extend(
