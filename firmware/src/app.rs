@@ -53,6 +53,9 @@ pub struct App {
     longest_silence_us: u32,
     /// Since nothing from the PC was left to be taken: what is taken now arrived later.
     emptied: Age,
+    /// Since a frame's last byte was taken, or longer, as `emptied`; the zero that ends it may be
+    /// lost, and come with the next one.
+    heard: Age,
     /// Whether nothing was left to be taken since the last tick.
     is_emptied: bool,
     /// Since torque was switched off; old where somebody else may have switched it on.
@@ -97,6 +100,7 @@ impl App {
             life: Age::NEVER,
             longest_silence_us: 0,
             emptied: Age::from(board.clock()),
+            heard: Age::NEVER,
             is_emptied: false,
             off: Age::from(board.clock()),
             arming: None,
@@ -190,7 +194,9 @@ impl App {
             }
             return false;
         }
-        if byte == 0 && !self.link.is_idle() {
+        if byte != 0 {
+            self.heard = self.emptied;
+        } else if !self.link.is_idle() {
             self.filter.end_frame();
         }
         let Some(command) = self.link.push(byte, &mut self.statistics) else {
@@ -257,6 +263,7 @@ impl App {
             &mut self.attitude_age,
             &mut self.off,
             &mut self.emptied,
+            &mut self.heard,
         ] {
             age.pass(clock);
         }

@@ -23,7 +23,7 @@ impl App {
     pub(super) fn obey<B: Board>(&mut self, board: &mut B, command: Numbered<Command>) {
         let Numbered { sequence, message } = command;
         if message.is_life() {
-            self.life = self.emptied;
+            self.life = self.heard;
         }
         let outcome = self.outcome(board, sequence, message);
         if let Outcome::Answer(outcome) = outcome {
@@ -60,7 +60,7 @@ impl App {
             Command::Speeds(speeds) => self.set_goal(sequence, Goal::Speeds(speeds)),
             Command::Attitude(attitude) => {
                 self.attitude = attitude;
-                self.attitude_age = self.emptied;
+                self.attitude_age = self.heard;
                 Outcome::Quiet
             }
             Command::Arm { token, limits } => match self.arm(board, sequence, token, limits) {

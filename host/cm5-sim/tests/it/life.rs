@@ -90,3 +90,19 @@ fn the_longest_silence_is_told() {
     let told = telemetry(&mut cm5).longest_silence_ms;
     assert!((35..=60).contains(&told), "{told} ms");
 }
+
+/// A frame whose last byte was lost is completed by the zero before the next one, and counts from
+/// when it came.
+#[test]
+fn life_counts_from_its_bytes_not_from_a_zero_that_comes_late() {
+    let mut cm5 = VirtualCm5::new();
+    arm(&mut cm5);
+    say(&mut cm5, &Command::KeepAlive, 50);
+    let (mut frame, _) = cm5.pc_mut().frame(&Command::KeepAlive);
+    frame.pop();
+    cm5.send_bytes(&frame);
+    cm5.run_ms(70.0);
+    cm5.send_bytes(&[0]);
+    cm5.run_ms(31.0);
+    assert_eq!(cm5.app.condition(), Condition::Soft);
+}
