@@ -140,8 +140,8 @@ impl App {
             }
             self.load_plan(board);
         }
-        self.pass(board.clock());
         self.pump(board);
+        self.pass(board.clock());
         if board.tick_due() {
             // Here and nowhere else: only ticks that come and end prove that the firmware is alive.
             // Fed at their ends alone, a long one after a short one would come too late.
@@ -209,15 +209,14 @@ impl App {
         is_long
     }
 
-    /// Everything that happens once per period.
+    /// Everything that happens once per period, all ages being up to date.
     // One function of everything would be too long for the AVR's relative jumps: its parts stay
     // apart.
     #[inline(never)]
-    pub fn tick<B: Board>(&mut self, board: &mut B) {
+    fn tick<B: Board>(&mut self, board: &mut B) {
         let started = board.clock();
         let due = self.times.begin(started);
         self.ticks = self.ticks.wrapping_add(1);
-        self.pass(started);
         self.panel(board);
         if self.off.us() < INSIST_US && !self.is_armed() {
             bus::torque_off(board);

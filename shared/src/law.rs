@@ -7,7 +7,9 @@ use crate::gains::{GainTable, Row};
 #[cfg(target_arch = "avr")]
 mod avr;
 #[cfg(target_arch = "avr")]
-pub(crate) use avr::{departure, finish, one_sum};
+pub(crate) use avr::departure;
+#[cfg(target_arch = "avr")]
+use avr::{finish, one_sum};
 
 /// The inputs for the states `x`, both in the table's steps.
 ///
@@ -42,7 +44,7 @@ pub(crate) fn input<const N: usize>(row: &Row<N>, departure: &[i16; N]) -> i16 {
 /// The one rounding and the one saturation.
 #[cfg(not(target_arch = "avr"))]
 #[inline]
-pub(crate) fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
+fn finish<const N: usize>(sum: i32, row: &Row<N>) -> i16 {
     rounded(sum, row.shift, [row.low, row.high])
 }
 
@@ -79,9 +81,9 @@ impl RowRef<'_> {
     }
 }
 
-/// `bias` - sum of products of `k` and `x`, wrapping; of as many as the shorter has.
+/// `bias` - sum of products, wrapping.
 #[cfg(not(target_arch = "avr"))]
-pub(crate) fn one_sum(bias: i32, k: &[i16], x: &[i16]) -> i32 {
+fn one_sum(bias: i32, k: &[i16], x: &[i16]) -> i32 {
     bias.wrapping_sub(mac(k, x))
 }
 

@@ -19,7 +19,7 @@
 //! the gyro's offset takes the place of its equilibrium angle.
 
 use crate::gains::{GainTable, take};
-use crate::law::{departure, finish, input, one_sum};
+use crate::law::{control, departure, input};
 
 /// Inputs.
 pub const INPUTS: usize = 2;
@@ -58,18 +58,18 @@ pub struct Observer {
     pub balance_places: [u8; JOINTS],
 }
 
-/// Work that is done in steps, while servos are awaited: the next estimate, once inputs were
-/// applied, what the next readings should be, and what of the raw command is known before them.
+/// Work that is done in steps, while servos are awaited: what the next readings should be, then,
+/// once inputs were applied, the next estimate, and from it the readings behind it.
 ///
-/// Of a prediction: a row per reading. Zero, for a memory of zeros takes no RAM for its constant.
+/// Of a prediction: the departures, then a row per reading.
 const PREDICT: u8 = 0;
-/// Of the feedback: a row per input.
-const FEEDBACK: u8 = PREDICT + READINGS as u8;
-/// Nothing is left.
-const DONE: u8 = FEEDBACK + INPUTS as u8;
-/// Of an update, a row per estimated state; a prediction follows.
-const UPDATE: u8 = DONE + 1;
-const UPDATED: u8 = UPDATE + ESTIMATED as u8;
+const PREDICT_ROW: u8 = PREDICT + 1;
+/// The readings are predicted; nothing is left.
+const PREDICTED: u8 = PREDICT_ROW + READINGS as u8;
+/// Of an update: the departures, then a row per estimated state.
+const UPDATE: u8 = PREDICTED + 1;
+/// The last row of an update; a prediction follows.
+const LAST: u8 = UPDATE + ESTIMATED as u8;
 
 /// State of the observer: estimate, past inputs, innovation and applied inputs, and the next
 /// estimate while it is computed.
@@ -79,8 +79,6 @@ pub struct Memory {
     departure: [i16; WIDTH],
     next: [i16; ESTIMATED],
     predicted: [i16; READINGS],
-    /// Of each input, bias and products of estimate and past inputs.
-    foreseen: [i32; INPUTS],
     /// The step that is next.
     step: u8,
 }
@@ -96,7 +94,6 @@ impl Memory {
             departure: [0; WIDTH],
             next: [0; ESTIMATED],
             predicted: [0; READINGS],
-            foreseen: [0; INPUTS],
             step: PREDICT,
         }
     }
@@ -187,23 +184,10 @@ impl Observer {
                 0
             };
         }
-        self.feed_back(memory)
-    }
-
-    /// The raw command at this innovation: what was foreseen, and the innovation's own part.
-    fn feed_back(&self, memory: &Memory) -> [i16; INPUTS] {
-        let mut inputs = [0; INPUTS];
-        let innovation = memory.all.get(STATE..SEEN).and_then(<[i16]>::first_chunk);
-        let (Some(x0), Some(innovation)) = (self.feedback.x0.last_chunk(), innovation) else {
-            return inputs;
-        };
-        let departure: [i16; READINGS] = departure(x0, innovation);
-        let rows = self.feedback.rows.iter().zip(memory.foreseen);
-        for (input, (row, foreseen)) in inputs.iter_mut().zip(rows) {
-            let k: &[i16] = row.k.get(STATE..).unwrap_or(&[]);
-            *input = finish(one_sum(foreseen, k, &departure), row);
+        match memory.all.first_chunk() {
+            Some(seen) => control(&self.feedback, seen),
+            None => [0; INPUTS],
         }
-        inputs
     }
 
     /// Update the estimate by a sample under the applied inputs.
@@ -225,34 +209,29 @@ impl Observer {
     pub fn step_update(&self, memory: &mut Memory) -> bool {
         let step = memory.step;
         match step {
-            PREDICT..FEEDBACK => self.predict_row(memory, step - PREDICT),
-            FEEDBACK..DONE => self.foresee_row(memory, step - FEEDBACK),
-            DONE => return false,
-            _ => self.update_row(memory, step - UPDATE),
+            PREDICTED => return false,
+            PREDICT => {
+                if let (Some(state), Some(out)) = (
+                    memory.all.first_chunk(),
+                    memory.departure.first_chunk_mut::<STATE>(),
+                ) {
+                    *out = departure(&self.predict.x0, state);
+                }
+            }
+            UPDATE => memory.departure = departure(&self.update.x0, &memory.all),
+            PREDICT_ROW..PREDICTED => self.predict_row(memory, step),
+            _ => self.update_row(memory, step),
         }
         memory.step = step + 1;
-        if memory.step == UPDATED {
+        if step == LAST {
             memory.take_next();
             memory.step = PREDICT;
         }
         true
     }
 
-    fn update_row(&self, memory: &mut Memory, at: u8) {
-        if at == 0 {
-            memory.departure = departure(&self.update.x0, &memory.all);
-        }
-        let at = usize::from(at);
-        if let (Some(row), Some(out)) = (self.update.rows.get(at), memory.next.get_mut(at)) {
-            *out = input(row, &memory.departure);
-        }
-    }
-
-    fn predict_row(&self, memory: &mut Memory, at: u8) {
-        if at == 0 {
-            memory.depart(&self.predict.x0);
-        }
-        let at = usize::from(at);
+    fn predict_row(&self, memory: &mut Memory, step: u8) {
+        let at = usize::from(step - PREDICT_ROW);
         if let (Some(row), Some(out), Some(state)) = (
             self.predict.rows.get(at),
             memory.predicted.get_mut(at),
@@ -262,17 +241,10 @@ impl Observer {
         }
     }
 
-    fn foresee_row(&self, memory: &mut Memory, at: u8) {
-        if let (0, Some(x0)) = (at, self.feedback.x0.first_chunk()) {
-            memory.depart(x0);
-        }
-        let at = usize::from(at);
-        if let (Some(row), Some(out), Some(state)) = (
-            self.feedback.rows.get(at),
-            memory.foreseen.get_mut(at),
-            memory.departure.get(..STATE),
-        ) {
-            *out = one_sum(row.bias, &row.k, state);
+    fn update_row(&self, memory: &mut Memory, step: u8) {
+        let at = usize::from(step - UPDATE - 1);
+        if let (Some(row), Some(out)) = (self.update.rows.get(at), memory.next.get_mut(at)) {
+            *out = input(row, &memory.departure);
         }
     }
 
@@ -282,16 +254,6 @@ impl Observer {
 }
 
 impl Memory {
-    /// Estimate and past inputs from this operating point.
-    fn depart(&mut self, x0: &[i16; STATE]) {
-        if let (Some(state), Some(out)) = (
-            self.all.first_chunk(),
-            self.departure.first_chunk_mut::<STATE>(),
-        ) {
-            *out = departure(x0, state);
-        }
-    }
-
     /// The next estimate counts, and the applied inputs are the newest past ones.
     fn take_next(&mut self) {
         let all = &mut self.all;

@@ -77,7 +77,7 @@ fn a_robot_with_one_effect_of_its_drives_stands_by_the_plan_of_its_model() {
 #[test]
 fn a_robot_that_swings_too_fast_is_let_down_as_deploy_says() {
     let bench = Bench::new();
-    bench.put("m.toml", robot(&[("backlash", "2", "gap_rad = 0.03")]));
+    bench.put("m.toml", robot(&[("backlash", "2", "gap_rad = 0.032")]));
     for (options, code, stands) in [("", 1, 0), ("--joint-speed 12 --joint-range 1.5", 0, 3)] {
         assert_eq!(deploy(&bench, options).code, Some(code), "{options}");
         assert_eq!(stood(&bench, &LEANS[..3], options), stands, "{options}");

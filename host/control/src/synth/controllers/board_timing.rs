@@ -37,11 +37,11 @@ impl BoardTiming {
     /// deg/s: trusted more, what the linear model makes of one so old fells the robot from 2 deg.
     /// The torque follows at once.
     pub const HOST_ATTITUDE: BoardTiming = BoardTiming {
-        effect_s: 0.5e-3,
+        effect_s: 0.7e-3,
         drive_delay_s: [0.0; INPUTS],
         lag_s: 0.0,
         sensor_lag_s: [0.0; INPUTS],
-        age_s: [8.8e-3, 0.4e-3, 0.2e-3, 8.8e-3],
+        age_s: [8.5e-3, 0.4e-3, 0.2e-3, 8.5e-3],
         deviation: [
             EXACT_RAD,
             Position::LSB_RAD * ROUNDED,
