@@ -12,6 +12,9 @@ its "_min" twin to the fastest repeat:
                        plus the one-link ABA as timed in the C++ loop
   python_call          that difference: what one pin.aba call from Python costs
 
+With --robot FILE, it times a URDF file's tree on a fixed base instead, under the
+file's name without its ending.
+
 With --accelerations FILE, it also writes seeded states of the n = 3 and n = 30
 chains and both peers' accelerations (rad, rad/s, N m, rad/s^2).
 """
@@ -55,9 +58,9 @@ def forward_loop(model, data, q, calls):
         FORWARD(model, data)
 
 
-def mujoco_at(n):
-    """(model, data) of the n-link chain at its test state."""
-    model = chain.mujoco_model(n)
+def mujoco_at(n, model=None):
+    """(model, data) of the n-link chain, or another one, at its test state."""
+    model = model or chain.mujoco_model(n)
     data = mujoco.MjData(model)
     data.qpos, data.qvel, data.qfrc_applied = chain.test_state(n)
     return model, data
@@ -80,9 +83,9 @@ def microseconds(run, repeats, seconds=0.02):
     return median(times), min(times)
 
 
-def time_mujoco(n, repeats):
+def time_mujoco(n, repeats, model=None):
     """((median, min) in the C loop, (median, min) from Python), us."""
-    model, data = mujoco_at(n)
+    model, data = mujoco_at(n, model)
     q = data.qpos
 
     def in_c(calls):
@@ -97,9 +100,9 @@ def time_mujoco(n, repeats):
     return microseconds(in_c, repeats), microseconds(in_python, repeats)
 
 
-def time_pinocchio(n, repeats):
+def time_pinocchio(n, repeats, model=None):
     """((median, min) in the C++ loop, (median, min) from Python), us."""
-    model = chain.pinocchio_model(n)
+    model = model or chain.pinocchio_model(n)
     data = model.createData()
     q, dq, tau = chain.test_state(n)
     pool = pin.ModelPool(model, 1)
@@ -140,12 +143,26 @@ def accelerations(n):
     }
 
 
+def time_robot(file, repeats):
+    """Both peers' median microseconds at a robot's file."""
+    name = pathlib.Path(file).stem
+    ours, theirs = mujoco.MjModel.from_xml_path(file), pin.buildModelFromUrdf(file)
+    assert ours.nv == theirs.nv == theirs.nq
+    in_c, _ = time_mujoco(ours.nv, repeats, ours)
+    in_cpp, _ = time_pinocchio(theirs.nv, repeats, theirs)
+    return {"mujoco": {name: in_c[0]}, "pinocchio": {name: in_cpp[0]}, "unit": "us"}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--repeats", type=int, default=15)
     parser.add_argument("--links", type=int, nargs="+", default=[3, 30, 100])
     parser.add_argument("--accelerations", metavar="FILE")
+    parser.add_argument("--robot", metavar="FILE")
     args = parser.parse_args()
+    if args.robot:
+        print(json.dumps(time_robot(args.robot, args.repeats)))
+        return
 
     result = {}
 

@@ -9,8 +9,8 @@ use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand_tests::measured::Measured;
 use handstand_tests::peers::{
-    Arm, Robot, angles_after, chain_fixture, dlqr_off, dlqr_seconds, farthest_off, forward_seconds,
-    runs_per_second,
+    Arm, ROBOTS, Robot, angles_after, chain_fixture, dlqr_off, dlqr_seconds, farthest_off,
+    forward_seconds, runs_per_second,
 };
 use handstand_xtask::program::run as succeeds;
 use serde_json::Value;
@@ -145,6 +145,7 @@ impl Bench {
     ) -> Result<(), String> {
         if wanted(Task::Dynamics) {
             self.dynamics(rounds, table)?;
+            self.trees(rounds, table)?;
         }
         if wanted(Task::ClosedLoop) {
             self.closed_loop(rounds, table)?;
@@ -239,6 +240,34 @@ impl Bench {
                 ["", "", &format!("{off:.1e}"), "<= 1e-9"],
                 off <= 1e-9,
             );
+        }
+        Ok(())
+    }
+}
+
+/// How many times faster robots in space are to be than each peer.
+const IN_SPACE: [(&str, f64); 2] = [("mujoco", 5.0), ("pinocchio", 1.3)];
+
+impl Bench {
+    /// Forward dynamics of robots in space, out of the same files.
+    fn trees(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
+        for robot in ROBOTS {
+            let file = robot.file();
+            let written = std::fs::write(self.folder.join(&file), robot.urdf());
+            written.map_err(|error| format!("cannot write {file}: {error}"))?;
+            let mut pairs = IN_SPACE.map(|_| Vec::new());
+            for _ in 0..rounds {
+                let ours = robot.forward_seconds();
+                let theirs = self.script("dynamics.py", &["--robot", &file])?;
+                for (pairs, (peer, _)) in pairs.iter_mut().zip(IN_SPACE) {
+                    pairs.push((ours, 1e-6 * number(&theirs, &[peer, robot.name])));
+                }
+            }
+            for (pairs, (peer, target)) in pairs.iter().zip(IN_SPACE) {
+                let (name, joints) = (robot.name, robot.joints());
+                let row = format!("forward dynamics in space, {name} of {joints} joints: {peer}");
+                table.faster(&row, pairs, target);
+            }
         }
         Ok(())
     }

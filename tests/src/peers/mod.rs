@@ -4,11 +4,13 @@ mod arm;
 mod closed_loop;
 mod dynamics;
 mod gains;
+mod trees;
 
 pub use arm::{Arm, Starts};
 pub use closed_loop::{Robot, angles_after, runs_per_second};
 pub use dynamics::{farthest_off, forward_seconds};
 pub use gains::{chain_fixture, dlqr_off, dlqr_seconds};
+pub use trees::{Limbs, ROBOTS};
 
 use std::time::Instant;
 
