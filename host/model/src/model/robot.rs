@@ -31,16 +31,18 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// What `[rig] robot` names, if it names anything; `model` is the model's file.
+    /// What `[rig] robot` names, if it names anything; `model` is the model's file, `given` the
+    /// robot's text where it is not to be read from there.
     ///
     /// # Errors
     /// A file that cannot be read, is no robot, or is another than the one noted.
-    pub(super) fn read(rig: &Table, model: &Path) -> Result<Option<Robot>> {
+    pub(super) fn read(rig: &Table, model: &Path, given: Option<&str>) -> Result<Option<Robot>> {
         let Some(file) = rig.text("robot")? else {
             return Ok(None);
         };
         let path = model.parent().unwrap_or(Path::new("")).join(file);
-        let text = std::fs::read_to_string(&path).map_err(|source| {
+        let text = given.map_or_else(|| std::fs::read_to_string(&path), |text| Ok(text.into()));
+        let text = text.map_err(|source| {
             let file = path.display().to_string();
             rig.bad(
                 "robot",

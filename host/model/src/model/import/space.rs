@@ -12,12 +12,15 @@ pub type Locked = (String, f64);
 
 /// The tree, and how the file names its joints and links.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct InSpace {
+pub(in crate::model) struct InSpace {
     pub tree: SpatialTree,
     /// Of each link: the joint that carries it.
     pub joints: Vec<TreeJoint>,
     /// Of each link: the body's name and line.
     pub bodies: Vec<(String, usize)>,
+    /// Of each body of the file: the link to which it is fixed, none for the base, and where its
+    /// frame stands in that link's.
+    pub fixed: Vec<(Option<usize>, Isometry3<f64>)>,
     pub left_out: Vec<Remark>,
 }
 
@@ -26,9 +29,6 @@ struct Builder<'a> {
     robot: &'a RobotTree,
     locked: &'a [Locked],
     file: &'a str,
-    /// Of each body: the link to which it is fixed, none for the base, and where it stands in that
-    /// link's frame.
-    fixed: Vec<(Option<usize>, Isometry3<f64>)>,
     inertials: Vec<Inertial>,
     found: InSpace,
 }
@@ -39,7 +39,11 @@ struct Builder<'a> {
 /// # Errors
 /// A joint that is locked and not there, one that moves in several ways, and links that would move
 /// without mass.
-pub(super) fn in_space(robot: &RobotTree, locked: &[Locked], file: &str) -> Result<InSpace> {
+pub(in crate::model) fn in_space(
+    robot: &RobotTree,
+    locked: &[Locked],
+    file: &str,
+) -> Result<InSpace> {
     let names = || robot.bodies.iter().flat_map(|body| &body.joints);
     for (name, _) in locked {
         if !names().any(|joint| joint.name == *name) {
@@ -54,7 +58,6 @@ pub(super) fn in_space(robot: &RobotTree, locked: &[Locked], file: &str) -> Resu
         robot,
         locked,
         file,
-        fixed: Vec::with_capacity(robot.bodies.len()),
         inertials: Vec::new(),
         found: InSpace {
             tree: SpatialTree {
@@ -63,6 +66,7 @@ pub(super) fn in_space(robot: &RobotTree, locked: &[Locked], file: &str) -> Resu
             },
             joints: Vec::new(),
             bodies: Vec::new(),
+            fixed: Vec::with_capacity(robot.bodies.len()),
             left_out: Vec::new(),
         },
     };
@@ -78,7 +82,7 @@ impl Builder<'_> {
         let body = &robot.bodies[index];
         let (mut owner, mut stands) = match body.parent {
             Some(parent) => {
-                let (owner, stands) = self.fixed[parent];
+                let (owner, stands) = self.found.fixed[parent];
                 (owner, stands * body.pose)
             }
             None => (None, body.pose),
@@ -108,7 +112,7 @@ impl Builder<'_> {
             owner = Some(self.inertials.len() - 1);
             stands = Isometry3::from(anchor.inverse());
         }
-        self.fixed.push((owner, stands));
+        self.found.fixed.push((owner, stands));
         if owner.is_some() {
             self.sound(index)?;
         }
