@@ -17,6 +17,7 @@ mod mjcf;
 mod next;
 mod simulators;
 mod space;
+mod space_export;
 mod spoiled;
 mod verdicts;
 

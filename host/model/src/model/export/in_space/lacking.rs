@@ -52,7 +52,7 @@ fn bodies(missing: &mut Vec<NotCarried>, read: &Pair, format: &str) {
     let SpatialTree { links, .. } = own;
     for (index, (own, file)) in links.iter().zip(&file.links).enumerate() {
         let off = |own: f64, file: f64| !is_near(own, file);
-        let far = (own.com_m - file.com_m).norm() > super::NEAR * own.com_m.norm().max(1e-6);
+        let far = (own.com_m - file.com_m).norm() > super::NEAR * own.com_m.norm().max(1e-3);
         let turned = (own.inertia_kg_m2 - file.inertia_kg_m2).norm();
         let heavy = turned > super::NEAR * own.inertia_kg_m2.norm().max(1e-12);
         for (part, is_off) in [
