@@ -17,6 +17,7 @@
 use super::{Console, ExitStatus, input, show};
 use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
+use handstand::model::ParameterPath;
 use handstand::model::edit::{moved, set_bounds};
 use handstand::report::{refitted_json, refitted_text};
 use handstand::{Model, Result, output};
@@ -64,9 +65,11 @@ pub fn run(args: &FitArgs, console: &Console) -> Result<ExitStatus> {
 /// The model's text with the bounds that were asked for.
 fn bounded(args: &FitArgs) -> Result<String> {
     let text = input::model_text(&args.model)?;
+    let model = Model::parse(&text, &args.model)?;
     let bounds = args.bounds.iter().map(|asked| {
         let (path, range) = asked.split_once('=').unwrap_or((asked, ""));
-        Ok((path.parse()?, Some(input::range("bounds", range)?)))
+        let path = ParameterPath::read(path, &model)?;
+        Ok((path, Some(input::range("bounds", range)?)))
     });
     match bounds.collect::<Result<Vec<_>>>()?.as_slice() {
         [] => Ok(text),

@@ -161,6 +161,12 @@ impl Model {
         }
     }
 
+    /// The joint that a robot in space calls so, counted from 0.
+    pub fn joint_named(&self, name: &str) -> Option<usize> {
+        let robot = self.robot.as_ref()?;
+        robot.joints.iter().position(|own| own == name)
+    }
+
     /// What messages call a joint beside its number: the name in the robot's file, if there is one.
     pub fn joint_name(&self, joint: usize) -> Option<&str> {
         let robot = self.robot.as_ref()?;

@@ -196,3 +196,49 @@ fn what_makes_no_robot_is_refused_with_the_remedy() {
             .contains("and gains hold chains")
     );
 }
+
+#[test]
+fn addresses_name_links_and_joints() {
+    let (_folder, file) = folder();
+    let links = "[[link]]\nname = \"mast\"\n[[link]]\nname = \"boom\"\nmass_kg = 1.5\n\
+                 [[link]]\nname = \"cart\"\n";
+    let text = MODEL.replace(
+        "[[joint]]\nname = \"slew\"",
+        &format!("{links}[[joint]]\nname = \"slew\""),
+    ) + "[[effect]]\nkind = \"viscous\"\njoint = \"luff\"\ncoefficient_nm_s_rad = 0.5\n\
+         [fit]\nfree = [\"link.boom.mass_kg\", \"viscous@luff.coefficient_nm_s_rad\"]\n\
+         [fit.bounds]\n\"link.boom.mass_kg\" = [1.0, 2.0]\n";
+    let model = Model::parse(&text, &file).unwrap();
+    let free: Vec<String> = model.free.iter().map(ToString::to_string).collect();
+    assert_eq!(free, ["link2.mass_kg", "viscous@2.coefficient_nm_s_rad"]);
+    assert_eq!(model.free[0].bounds(&model), (1.0, 2.0));
+    let read = |text: &str| ParameterPath::read(text, &model);
+    assert_eq!(read("link.boom.mass_kg").unwrap(), model.free[0]);
+    assert_eq!(read("link2.mass_kg").unwrap(), model.free[0]);
+    for (text, told) in [
+        ("link.bom.mass_kg", "no link `bom`; did you mean `boom`"),
+        ("joint.lift.gain_per_rad", "no joint `lift`"),
+        (
+            "viscous@lufff.coefficient_nm_s_rad",
+            "no joint `lufff`; did you mean `luff`",
+        ),
+    ] {
+        let error = read(text).unwrap_err();
+        let found = format!("{error}; {}", error.remedy().unwrap_or_default());
+        assert!(found.contains(told), "{found}");
+    }
+    // What a fit finds is written where the names stand, and bounds are not doubled.
+    let values = [(model.free[0], 1.25), (model.free[1], 0.75)];
+    let fitted = crate::model::edit::set_values(&text, &file, &values).unwrap();
+    assert!(fitted.contains("mass_kg = 1.25"), "{fitted}");
+    assert!(
+        fitted.contains("joint = \"luff\"\ncoefficient_nm_s_rad = 0.75"),
+        "{fitted}"
+    );
+    let bounds = [(model.free[0], Some((0.5, 3.0)))];
+    let bounded = crate::model::edit::set_bounds(&text, &file, &bounds).unwrap();
+    let again = Model::parse(&bounded, &file).unwrap();
+    assert_eq!(again.bounds, [(model.free[0], (0.5, 3.0))]);
+    let twice = text + "\"link2.mass_kg\" = [1.0, 3.0]\n";
+    assert!(refused(&twice, &file).contains("link2.mass_kg"));
+}
