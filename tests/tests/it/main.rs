@@ -18,6 +18,7 @@ mod next;
 mod simulators;
 mod space;
 mod space_export;
+mod space_names;
 mod spoiled;
 mod verdicts;
 

@@ -226,7 +226,7 @@ const HIDDEN_NM_S_RAD: f64 = 0.06;
 
 /// A motion and the torques that it takes by Newton and Euler, viscous friction at the boom
 /// included, at 500 Hz, angles read to 1e-4 rad.
-fn swung(model: &Model, number: usize) -> String {
+pub(crate) fn swung(model: &Model, number: usize) -> String {
     let equations = SpatialEquations::new(&model.tree().unwrap());
     let mut work = SpatialWorkspace::default();
     let mut text = String::from(
