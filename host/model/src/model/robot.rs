@@ -98,12 +98,13 @@ pub(super) fn link_values(tree: &SpatialTree, index: usize) -> Link {
         length_m: next.map_or(com_m, |next| next.place.translation.vector.norm()),
         com_m,
         mass_kg: link.mass_kg,
-        inertia_kg_m2: about_axis(link),
+        // Noise below 0 is none, and stays out of proportions.
+        inertia_kg_m2: about_axis(link).max(0.0),
     }
 }
 
 /// Moment of inertia about a line through the centre of mass along the joint's axis, kg m^2.
-fn about_axis(link: &SpatialLink) -> f64 {
+pub(super) fn about_axis(link: &SpatialLink) -> f64 {
     let axis = link.axis.into_inner();
     axis.dot(&(link.inertia_kg_m2 * axis))
 }

@@ -97,7 +97,7 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
             toml,
             joints: joints.collect(),
             left_out: found.left_out,
-            notes: Vec::new(),
+            notes: found.notes,
         });
     }
     let mut chain = planar_chain(&tree, &plan.joints, &name)?;

@@ -5,7 +5,11 @@ use super::tree::{
 };
 use crate::dynamics::{SpatialLink, SpatialTree};
 use crate::error::{Error, Place, Result};
+use crate::model::robot::about_axis;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
+
+/// A moment so little below 0 beside the mass is noise, m^2.
+const NOISE_M2: f64 = 1e-9;
 
 /// A joint that is held, and where, rad or m.
 pub type Locked = (String, f64);
@@ -22,6 +26,8 @@ pub(in crate::model) struct InSpace {
     /// frame stands in that link's.
     pub fixed: Vec<(Option<usize>, Isometry3<f64>)>,
     pub left_out: Vec<Remark>,
+    /// What the model holds and no body has: impossible moments.
+    pub notes: Vec<Remark>,
 }
 
 /// Builds the tree link by link.
@@ -68,6 +74,7 @@ pub(in crate::model) fn in_space(
             bodies: Vec::new(),
             fixed: Vec::with_capacity(robot.bodies.len()),
             left_out: Vec::new(),
+            notes: Vec::new(),
         },
     };
     for body in 0..robot.bodies.len() {
@@ -173,7 +180,7 @@ impl Builder<'_> {
             let remark = Remark::new("gravcomp", Some(&body.name), why).on(body.line);
             self.found.left_out.push(remark);
         }
-        self.found.left_out.extend(body.notes.iter().cloned());
+        self.found.notes.extend(body.notes.iter().cloned());
     }
 
     fn finish(mut self) -> Result<InSpace> {
@@ -212,7 +219,32 @@ impl Builder<'_> {
                 "give it an <inertial>, or lock its joint",
             ));
         }
+        self.possible()?;
         Ok(self.found)
+    }
+
+    /// Refuses moments about a joint's axis that are below 0 by more than noise.
+    fn possible(&self) -> Result<()> {
+        let links = self.found.tree.links.iter().zip(&self.found.bodies);
+        for ((link, (name, line)), joint) in links.zip(&self.found.joints) {
+            let moment = about_axis(link);
+            if moment < -NOISE_M2 * link.mass_kg {
+                let place = Place {
+                    line: Some(*line),
+                    ..Place::file(self.file)
+                };
+                return Err(Error::data(
+                    place,
+                    format!(
+                        "the link {name}, with what is fixed to it, has a moment of inertia of \
+                         {moment:.3e} kg m^2 about the axis of {}",
+                        joint.name
+                    ),
+                    "mend the products of inertia: no body has a moment below 0",
+                ));
+            }
+        }
+        Ok(())
     }
 }
 

@@ -242,3 +242,66 @@ fn addresses_name_links_and_joints() {
     let twice = text + "\"link2.mass_kg\" = [1.0, 3.0]\n";
     assert!(refused(&twice, &file).contains("link2.mass_kg"));
 }
+
+/// An import of the crane with other moments of the boom.
+fn imported(moments: &str) -> crate::error::Result<crate::model::import::Imported> {
+    let boom = "ixx=\"0.001\" iyy=\"0.03\" izz=\"0.03\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
+    let text = URDF.replace(boom, moments);
+    assert_ne!(text, URDF);
+    let space = Some(crate::model::import::SpacePlan::default());
+    let plan = crate::model::import::ImportPlan {
+        space,
+        ..Default::default()
+    };
+    crate::model::import::import(&text, Path::new("crane.urdf"), &plan)
+}
+
+#[test]
+fn moments_that_no_body_has_are_told_with_the_link_and_the_remedy() {
+    for (moments, told) in [
+        ("ixx=\"0.1\" iyy=\"0.03\" izz=\"0.03\"", "triangle"),
+        (
+            "ixx=\"0.03\" iyy=\"0.03\" izz=\"0.03\" ixz=\"0.04\"",
+            "not all above 0",
+        ),
+    ] {
+        let found = imported(moments).unwrap();
+        let note = found.notes[0].to_string();
+        assert!(note.starts_with("inertia of boom, line 5: "), "{note}");
+        assert!(note.contains(told) && note.contains("in the CAD"), "{note}");
+        assert!(
+            found.toml.contains("# Note: inertia of boom"),
+            "{}",
+            found.toml
+        );
+        assert!(found.left_out.iter().all(|part| part.part != "inertia"));
+    }
+    assert!(
+        imported("ixx=\"0.03\" iyy=\"0.03\" izz=\"0.04\"")
+            .unwrap()
+            .notes
+            .is_empty()
+    );
+}
+
+/// The boom turns about y: 0.03 there, and less than nothing about an axis between x and z.
+#[test]
+fn a_moment_below_0_about_its_own_axis_is_refused_in_the_robots_file() {
+    let tilted = URDF.replace("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"1 0 -1\"/>");
+    let boom = "ixx=\"0.001\" iyy=\"0.03\" izz=\"0.03\" ixy=\"0\" ixz=\"0\"";
+    let tilted = tilted.replace(boom, "ixx=\"0.01\" iyy=\"0.03\" izz=\"0.01\" ixz=\"0.04\"");
+    let locked = [("grip".to_string(), 0.0)];
+    let path = Path::new("crane.urdf");
+    let error = crate::model::import::robot_in_space(&tilted, path, &locked);
+    let error = error.err().unwrap();
+    let found = format!("{error}; {}", error.remedy().unwrap_or_default());
+    for told in [
+        "crane.urdf:5",
+        "the link boom",
+        "-3.000e-2 kg m^2",
+        "axis of luff",
+        "products",
+    ] {
+        assert!(found.contains(told), "{told}: {found}");
+    }
+}
