@@ -48,7 +48,11 @@ impl Change {
     fn applied(&self, body: &Inertial, stands: &Isometry3<f64>) -> Inertial {
         let arm_m = (stands * body.com_m).coords - self.from_m;
         // Moments of a mass far from the centre are its distance squared.
-        let reach = (self.moments / self.mass).sqrt();
+        let reach = if self.mass > 0.0 {
+            (self.moments / self.mass).sqrt()
+        } else {
+            1.0
+        };
         let shift_m = self.to_m - self.from_m + arm_m * (reach - 1.0);
         let com_m = if shift_m.norm() <= NOISE_M {
             body.com_m

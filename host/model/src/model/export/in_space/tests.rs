@@ -276,6 +276,20 @@ fn what_the_robots_file_sets_in_another_way_is_listed() {
     assert_eq!(text, MJCF);
 }
 
+/// Without mass the distances of bodies give no moments: what is lost is listed, nothing is NaN.
+#[test]
+fn a_link_whose_mass_is_taken_away_loses_what_its_bodies_distances_gave() {
+    let crane = Crane::of(URDF, &[("grip", 0.5)], true);
+    let mut model = crane.model();
+    model.links[1].mass_kg = 0.0;
+    let (text, missing, _) = crane.exported(&model);
+    assert!(
+        text.contains("<mass value='0.0'/>") && !text.contains("NaN"),
+        "{text}"
+    );
+    assert_eq!(parts(&missing), ["lock of grip", "com_m", "inertia_kg_m2"]);
+}
+
 #[test]
 fn another_format_and_a_planar_chain_are_refused() {
     let crane = Crane::of(URDF, &[], false);
