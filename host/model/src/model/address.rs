@@ -22,8 +22,9 @@ impl FromStr for ParameterPath {
 }
 
 impl ParameterPath {
-    /// Reads an address in a model: of a robot in space `link.boom.mass_kg`, `joint.luff.gain_per_rad`
-    /// and `coulomb@luff.torque_nm` name what `link2`, `joint2` and `coulomb@2` number.
+    /// Reads an address in a model: of a robot in space `link.boom.mass_kg`,
+    /// `joint.luff.gain_per_rad` and `coulomb@luff.torque_nm` name what `link2`, `joint2` and
+    /// `coulomb@2` number.
     ///
     /// # Errors
     /// [`Error::Usage`] with a [`PathReason`].

@@ -15,8 +15,8 @@ const NOISE_M: f64 = 1e-14;
 ///
 /// The link's mass is to be so many times the file's, its moments of inertia so many times theirs,
 /// and its centre of mass elsewhere. Every body takes both factors, and the distances of their
-/// centres from the link's grow alike: so the sum is right, the moments of each body stay those of a
-/// body, and what is turned stays turned as it was.
+/// centres from the link's grow alike: so the sum is right, the moments of each body stay those of
+/// a body, and what is turned stays turned as it was.
 struct Change {
     mass: f64,
     moments: f64,

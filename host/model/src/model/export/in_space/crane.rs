@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// A mast, a boom with a fixed counterweight, a cart that slides and a jaw that is locked; a prefix
 /// of a vendor's that is not declared, comments, and ends of lines of both kinds.
-pub const URDF: &str = "\u{feff}<?xml version=\"1.0\"?>\r\n<robot name=\"crane\">\n<!-- base & all -->
+pub const URDF: &str = "\u{feff}<?xml version=\"1.0\"?>\r\n\
+<robot name=\"crane\">\n<!-- base & all -->
 <link name=\"base\"/><acme:tag x='1'/>
 <link name=\"mast\"><inertial><origin xyz=\"0 0.01 0.2\" rpy=\"0.1 0 0\"/><mass value=\"2\"/>
   <inertia ixx=\"0.02\" iyy=\"0.02\" izz=\"0.004\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>
@@ -16,11 +17,13 @@ pub const URDF: &str = "\u{feff}<?xml version=\"1.0\"?>\r\n<robot name=\"crane\"
 <link name=\"boom\"><inertial>
   <origin rpy=\"0 0.3 0\" xyz=\"0.3 0 0\"/>
   <mass value='1'/> <!-- weighed -->
-  <inertia ixx=\"0.001\" iyy=\"0.03\" izz=\"0.03\" ixy=\"1e-4\" ixz=\"0\" iyz=\"0\"/></inertial></link>
+  <inertia ixx=\"0.001\" iyy=\"0.03\" izz=\"0.03\" ixy=\"1e-4\" ixz=\"0\" iyz=\"0\"/>
+  </inertial></link>
 <link name=\"weight\"><inertial><mass value=\"0.4\"/>
   <inertia ixx=\"1e-3\" iyy=\"1e-3\" izz=\"1e-3\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>
 <link name=\"cart\"><inertial><mass value=\"0.5\"/>
-  <inertia ixx=\"0.001\" iyy=\"0.001\" izz=\"0.001\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>
+  <inertia ixx=\"0.001\" iyy=\"0.001\" izz=\"0.001\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>
+  </inertial></link>
 <link name=\"jaw\"><inertial><origin xyz=\"0 0.1 0\"/><mass value=\"0.1\"/>
   <inertia ixx=\"1e-4\" iyy=\"2e-4\" izz=\"1e-4\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>
 <joint name=\"slew\" type=\"continuous\"><parent link=\"base\"/><child link=\"mast\"/>
@@ -55,7 +58,8 @@ pub const MJCF: &str = "<mujoco model=\"crane\">
   <actuator>
     <position name=\"a\" joint=\"slew\" class=\"arm\" kv=\"0.5\"/>
     <velocity name='b' joint='luff' kv='0.4' forcerange='-3 3'/>
-    <general joint=\"trolley\" gainprm=\"5\" biastype=\"affine\" biasprm=\"0 0 -2\" ctrlrange=\"-1 1\"/>
+    <general joint=\"trolley\" gainprm=\"5\" biastype=\"affine\" biasprm=\"0 0 -2\"
+      ctrlrange=\"-1 1\"/>
   </actuator>
 </mujoco>";
 

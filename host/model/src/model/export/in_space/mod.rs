@@ -1,8 +1,8 @@
 //! A robot in space: its own file with the values that the model changes.
 //!
-//! The text is changed at the bytes of single attributes, so that shapes, comments, unknown elements
-//! and layout stay. What it then holds is not assumed: it is read again, and what differs from the
-//! model is listed.
+//! The text is changed at the bytes of single attributes, so that shapes, comments, unknown
+//! elements and layout stay. What it then holds is not assumed: it is read again, and what differs
+//! from the model is listed.
 
 mod actuators;
 mod bodies;
@@ -131,12 +131,12 @@ impl<'a> Pair<'a> {
     }
 }
 
-/// The robot's file of a robot in space with the model's masses, friction, rotors and drives; `path`
-/// is the model's file, beside which the robot's is, `format` that in which it is asked for: `urdf`
-/// or `mjcf`.
+/// The robot's file of a robot in space with the model's masses, friction, rotors and drives;
+/// `path` is the model's file, beside which the robot's is, `format` that in which it is asked for:
+/// `urdf` or `mjcf`.
 ///
-/// What the text cannot say is listed, as is what the robot's file sets in another way. An unchanged
-/// import gives the file's own text.
+/// What the text cannot say is listed, as is what the robot's file sets in another way. An
+/// unchanged import gives the file's own text.
 ///
 /// # Errors
 /// A planar chain; another format than the robot's file has; a file that cannot be read.
