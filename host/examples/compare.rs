@@ -7,12 +7,13 @@
 use handstand::challenge::{Hidden, generate};
 use handstand::compare::{Comparison, compare, text};
 use handstand::log::{LogRequest, read};
+use handstand::model::JointNames;
 use handstand::{Error, Model, Result};
 use std::path::Path;
 
 fn main() -> Result<()> {
     let compared = backlash_missing()?;
-    println!("{}", text(&[compared]));
+    println!("{}", text(&[compared], &JointNames::default()));
     Ok(())
 }
 

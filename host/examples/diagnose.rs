@@ -7,13 +7,15 @@
 use handstand::challenge::{Hidden, generate};
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, diagnose};
 use handstand::log::{LogRequest, read};
+use handstand::model::JointNames;
 use handstand::motion::Motion;
 use handstand::report::diagnosis_text;
 use handstand::{Error, Model, Result};
 use std::path::Path;
 
 fn main() -> Result<()> {
-    println!("{}", diagnosis_text(&viscous_friction_missing()?));
+    let diagnosis = viscous_friction_missing()?;
+    println!("{}", diagnosis_text(&diagnosis, &JointNames::default()));
     Ok(())
 }
 

@@ -8,6 +8,7 @@ use crate::value::{framed, plain};
 use crate::work;
 use handstand::compare::{ModelRun, text};
 use handstand::fitting::{FitProblem, Horizon};
+use handstand::model::JointNames;
 use handstand::motion::Split;
 use handstand::report::{Report, ReportProvenance, html, json};
 use numpy::PyArray2;
@@ -137,7 +138,7 @@ impl Comparison {
     }
 
     fn __str__(&self) -> String {
-        text(&self.report.comparisons)
+        text(&self.report.comparisons, &JointNames::default())
     }
 
     fn __repr__(&self) -> String {

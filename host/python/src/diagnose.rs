@@ -9,6 +9,7 @@ use handstand::compare::compare_all;
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, FittedEffect, LogDiagnosis, diagnose_logs};
 use handstand::fitting::{Horizon, Progress, effect_ids, free_parameters};
+use handstand::model::JointNames;
 use handstand::motion::Split;
 use handstand::report::{Report, ReportProvenance, diagnosis_json, diagnosis_text, html};
 use pyo3::prelude::*;
@@ -194,7 +195,7 @@ impl Diagnosis {
     }
 
     fn __str__(&self) -> String {
-        diagnosis_text(&self.inner)
+        diagnosis_text(&self.inner, &JointNames::default())
     }
 
     fn __repr__(&self) -> String {

@@ -51,7 +51,7 @@ impl Model {
 
     /// The number at an address.
     fn found(&self, address: &str) -> PyResult<(ParameterPath, f64)> {
-        let path: ParameterPath = address.parse().map_err(|error: handstand::Error| {
+        let path = ParameterPath::read(address, &self.inner).map_err(|error| {
             let remedy = error.remedy().unwrap_or_default();
             no_address(&error.to_string(), &remedy)
         })?;

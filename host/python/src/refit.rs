@@ -9,6 +9,7 @@ use handstand::fitting::{
     Addition, Refitted, Undetermined, add_effects, candidates_named, free_parameters, refit,
     with_refitted,
 };
+use handstand::model::JointNames;
 use handstand::report::{refitted_json, refitted_text};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -206,7 +207,7 @@ impl Refit {
     }
 
     fn __str__(&self) -> String {
-        refitted_text(&self.refitted, self.before)
+        refitted_text(&self.refitted, self.before, &JointNames::default())
     }
 
     fn __repr__(&self) -> String {

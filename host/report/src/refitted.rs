@@ -1,16 +1,17 @@
 //! A refitted model, for people and programs.
 
 use crate::fitting::{FittedValue, Refitted, in_windows};
+use crate::model::JointNames;
 use crate::output::number::{exact, given};
 use crate::output::table::{TableColumn, table_of, within_width};
 use serde_json::{Value, json};
 
 /// A refitted model for people: its values, then its errors; `before` says which model left the
-/// error before.
-pub fn refitted_text(refitted: &Refitted, before: &str) -> String {
+/// error before. Links and joints are called as `names` has them.
+pub fn refitted_text(refitted: &Refitted, before: &str, names: &JointNames) -> String {
     let on_bound = |on_bound: bool| if on_bound { "on its bound" } else { "" };
     let columns: &[TableColumn<FittedValue>] = &[
-        ("Parameter", &|v| v.path.clone()),
+        ("Parameter", &|v| names.in_text(&v.path)),
         ("Value", &|v| exact(v.value)),
         ("95 % interval", &|v| {
             format!("{} to {}", exact(v.low), exact(v.high))
@@ -41,7 +42,7 @@ pub fn refitted_text(refitted: &Refitted, before: &str) -> String {
     }
     let warnings = warnings(refitted).into_iter();
     lines.extend(warnings.map(|line| format!("warning: {line}")));
-    lines.join("\n")
+    names.in_text(&lines.join("\n"))
 }
 
 /// What to be wary of in a refitted model.

@@ -8,7 +8,7 @@ use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as 
 use crate::diagnose::{Alternative, BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
 use crate::effects;
 use crate::fitting::{FittedValue, in_windows};
-use crate::model::MeasuredSignal;
+use crate::model::{JointNames, MeasuredSignal};
 use crate::output::number::unit;
 use crate::output::number::{NONE, given, interval, mrad, percent, short};
 use crate::output::table::{TableColumn, plain_table, table_of, unbroken};
@@ -19,23 +19,24 @@ const WIDTH: u16 = 90;
 /// Rows shown of what was ruled out.
 const SHOWN: usize = 8;
 
-/// Everything a diagnosis says that fits a terminal.
-pub fn diagnosis_text(diagnosis: &Diagnosis) -> String {
+/// Everything a diagnosis says that fits a terminal. Links and joints are called as `names` has
+/// them.
+pub fn diagnosis_text(diagnosis: &Diagnosis, names: &JointNames) -> String {
     let sections = [
         Some(headline(diagnosis)),
-        effects(&diagnosis.effects),
+        effects(&diagnosis.effects, names),
         wrong_values(&diagnosis.wrong_values),
         error(diagnosis),
-        budget(&diagnosis.budget, diagnosis.error.quantity),
+        budget(&diagnosis.budget, names, diagnosis.error.quantity),
         alternatives(&diagnosis.alternatives, diagnosis.error.quantity),
-        not_chosen(diagnosis, true),
-        not_chosen(diagnosis, false),
+        not_chosen(diagnosis, names, true),
+        not_chosen(diagnosis, names, false),
         residual_structure(diagnosis),
         list("Next", &diagnosis.next),
         list("Warnings", &diagnosis.warnings),
     ];
     let sections: Vec<String> = sections.into_iter().flatten().collect();
-    sections.join("\n\n") + "\n"
+    names.in_text(&sections.join("\n\n")) + "\n"
 }
 
 fn headline(diagnosis: &Diagnosis) -> String {
@@ -45,7 +46,7 @@ fn headline(diagnosis: &Diagnosis) -> String {
     lines.join("\n")
 }
 
-fn effects(effects: &[FittedEffect]) -> Option<String> {
+fn effects(effects: &[FittedEffect], names: &JointNames) -> Option<String> {
     let mut values = Vec::new();
     for effect in effects {
         values.extend(effect.parameters.iter().map(|fitted| (effect, fitted)));
@@ -59,7 +60,9 @@ fn effects(effects: &[FittedEffect]) -> Option<String> {
                 "@all" => "all",
                 _ => "rig",
             };
-            effect.joint.map_or(all.into(), |joint| joint.to_string())
+            effect.joint.map_or(all.into(), |joint| {
+                names.joint(joint).map_or(joint.to_string(), str::to_string)
+            })
         }),
         ("Parameter", &|(_, fitted)| fitted.key.clone()),
         ("Value", &|(_, fitted)| ends(fitted)[0].clone()),
@@ -133,10 +136,10 @@ fn folds(folds: &[Fold], unit: &str) -> Option<String> {
 }
 
 /// What each part of an explanation of several removes.
-fn budget(parts: &[BudgetedPart], quantity: MeasuredSignal) -> Option<String> {
+fn budget(parts: &[BudgetedPart], names: &JointNames, quantity: MeasuredSignal) -> Option<String> {
     let [leaves, without] = in_columns(["leaves", "without it"], quantity);
     let columns: &[TableColumn<&BudgetedPart>] = &[
-        ("Error budget", &|part| part.part.clone()),
+        ("Error budget", &|part| names.in_text(&part.part)),
         ("Alone", &|part| with_ends(&part.alone)),
         (&leaves, &|part| mrad(part.alone.error_rad)),
         ("Beyond the others", &|part| with_ends(&part.beyond_others)),
@@ -178,7 +181,7 @@ fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Optio
 }
 
 /// What was tried and not chosen: what does as well, then what does worse.
-fn not_chosen(diagnosis: &Diagnosis, as_good: bool) -> Option<String> {
+fn not_chosen(diagnosis: &Diagnosis, names: &JointNames, as_good: bool) -> Option<String> {
     let rows = sorted(&diagnosis.ruled_out, as_good);
     let title = if as_good {
         "As good, not needed"
@@ -189,11 +192,11 @@ fn not_chosen(diagnosis: &Diagnosis, as_good: bool) -> Option<String> {
     let mut table = plain_table([title, &fitted, &held_out, "BIC", "Why"]);
     for tried in rows.iter().take(SHOWN) {
         table.add_row([
-            tried.set.join(" + "),
+            names.in_text(&tried.set.join(" + ")),
             mrad(tried.training_error_rad),
             tried.held_out_error_rad.map_or(NONE.into(), mrad),
             short(tried.bic_change),
-            tried.why.clone(),
+            names.in_text(&tried.why),
         ]);
     }
     let mut lines = vec![lines(table, &[1, 2, 3])?];

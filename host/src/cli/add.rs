@@ -29,7 +29,7 @@
 use super::{Console, ExitStatus, fit, input};
 use handstand::fitting::{Addition, Candidate, Unhelpful, add_effects_from, candidates_named};
 use handstand::log::LogRequest;
-use handstand::model::ParameterPath;
+use handstand::model::{JointNames, ParameterPath};
 use handstand::report::DiagnosisFile;
 use handstand::{Model, Result};
 use serde_json::json;
@@ -64,6 +64,7 @@ pub fn run(args: &AddArgs, console: &Console) -> Result<ExitStatus> {
     let split = args.fit.motions(&model, &args.logs, console)?;
     let horizon = args.fit.judging.run.horizon;
     let names: Vec<String> = candidates.iter().map(ToString::to_string).collect();
+    let called = JointNames::of(&model);
     let (path, progress) = (&args.model, console.progress());
     let added = add_effects_from(&text, path, &candidates, &start, &split, horizon, &progress)?;
     // Nothing is printed beside the bar.
@@ -72,10 +73,11 @@ pub fn run(args: &AddArgs, console: &Console) -> Result<ExitStatus> {
         Addition::Added { text, refitted } => {
             let before = "for the model refitted without";
             let text = (text.as_str(), args.model.as_path());
-            fit::write(&refitted, text, &names, before, &args.fit, console)
+            let written = (names.as_slice(), before, &called);
+            fit::write(&refitted, text, written, &args.fit, console)
         }
-        Addition::Unhelpful(why) => refuse(&why, &names, console),
-        Addition::Undetermined(why) => fit::refuse(&why, console),
+        Addition::Unhelpful(why) => refuse(&why, &names, &called, console),
+        Addition::Undetermined(why) => fit::refuse(&why, &called, console),
     }
 }
 
@@ -112,7 +114,12 @@ impl AddArgs {
 type Asked = (Vec<Candidate>, Vec<(ParameterPath, f64)>);
 
 /// Says that the effects do not help, and writes nothing.
-fn refuse(unhelpful: &Unhelpful, names: &[String], console: &Console) -> Result<ExitStatus> {
+fn refuse(
+    unhelpful: &Unhelpful,
+    names: &[String],
+    called: &JointNames,
+    console: &Console,
+) -> Result<ExitStatus> {
     let (error, why) = (unhelpful.error(), unhelpful.why(names));
     if console.json {
         console.data(&json!({ "refused": why, "error": error }))?;
@@ -126,7 +133,8 @@ fn refuse(unhelpful: &Unhelpful, names: &[String], console: &Console) -> Result<
                 "`handstand diagnose` says which effect the logs ask for."
             }
         };
-        console.print(&format!("refused: {why}; nothing is written. {remedy}"))?;
+        let text = format!("refused: {why}; nothing is written. {remedy}");
+        console.print(&called.in_text(&text))?;
     }
     Ok(ExitStatus::Refused)
 }

@@ -24,6 +24,7 @@
 use super::page::{self, PageFile};
 use super::{Console, ExitStatus, input};
 use handstand::log::{LogFinding, LogRequest, read_with_findings};
+use handstand::model::JointNames;
 use handstand::motion::Split;
 use handstand::report::{Report, file_names, html, json};
 use handstand::{Result, compare};
@@ -71,6 +72,11 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<ExitStatus> {
         models.push((name, model, motions));
     }
     input::warn(&findings, console);
+    // Models of other robots have other names for the same number.
+    let names = models.first().map(|(_, model, _)| JointNames::of(model));
+    let same = |(_, model, _): &(_, _, _)| Some(JointNames::of(model)) == names;
+    let names = names.clone().filter(|_| models.iter().all(same));
+    let names = names.unwrap_or_default();
     let compared = models
         .iter()
         .map(|(name, model, motions)| (name.as_str(), model, motions.as_slice()));
@@ -82,7 +88,7 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<ExitStatus> {
         training: models.pop().map_or(Vec::new(), |(_, _, motions)| motions),
         held_out: Vec::new(),
     };
-    let text = compare::text(&comparisons);
+    let text = compare::text(&comparisons, &names);
     let report = Report {
         title: format!("{} against measured motions", comparisons[0].model),
         comparisons,

@@ -34,6 +34,7 @@ use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, LogDiagnosis, Verdict, diagnose_logs};
 use handstand::fitting::{Horizon, Progress, effect_ids};
 use handstand::log::{LogRequest, LogSet, read};
+use handstand::model::JointNames;
 use handstand::motion::Motion;
 use handstand::report::{Report, diagnosis_json, diagnosis_text, html};
 use handstand::synth::StateFeedbackPlan;
@@ -104,11 +105,11 @@ pub fn find(args: &DiagnoseArgs, console: &Console) -> Result<Diagnosis> {
     let plan = args.plan.load(&model)?;
     let LogDiagnosis { diagnosis, split } = try_all(&model, args, console)?;
     if diagnosis.verdict == Verdict::Unfit {
-        print(&diagnosis, &[], console)?;
+        print((&diagnosis, &model), &[], console)?;
         return Ok(diagnosis);
     }
     let compared = Compared::new(&model, &diagnosis, plan.as_ref(), args)?;
-    print(&diagnosis, &compared.named_loops(), console)?;
+    print((&diagnosis, &model), &compared.named_loops(), console)?;
     let page = || {
         Ok(html(&Report {
             title: format!("What {} is missing", model.name),
@@ -166,7 +167,11 @@ fn stopping(progress: &Progress) -> String {
 }
 
 /// Prints the diagnosis, and the closed loops before and after it where there are any.
-fn print(diagnosis: &Diagnosis, loops: &[NamedLoop], console: &Console) -> Result<()> {
+fn print(
+    (diagnosis, model): (&Diagnosis, &Model),
+    loops: &[NamedLoop],
+    console: &Console,
+) -> Result<()> {
     if console.json {
         let mut value = diagnosis_json(diagnosis);
         let after = loops.get(1).map(|(_, after)| after);
@@ -176,7 +181,8 @@ fn print(diagnosis: &Diagnosis, loops: &[NamedLoop], console: &Console) -> Resul
         );
         return console.data(&value);
     }
-    console.print(&(diagnosis_text(diagnosis) + &closed_loop_text(loops)))
+    let names = JointNames::of(model);
+    console.print(&(diagnosis_text(diagnosis, &names) + &closed_loop_text(loops)))
 }
 
 /// A model's name and its closed loop.

@@ -20,6 +20,7 @@ use super::{Console, ExitStatus, input, show};
 use handstand::Result;
 use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free_parameters};
 use handstand::log::{LogRequest, expanded};
+use handstand::model::JointNames;
 use handstand::output::number::exact;
 use handstand::output::table::TableColumn;
 use std::path::PathBuf;
@@ -57,31 +58,39 @@ pub fn run(args: &DriftArgs, console: &Console) -> Result<ExitStatus> {
     let horizon = args.run.of(&model, motions)?;
     let found = drift(&model, &free, &sessions, horizon);
     console.result(&serde_json::to_value(&found).unwrap_or_default(), || {
-        said(&found)
+        said(&found, &JointNames::of(&model))
     })?;
     Ok(ExitStatus::answer(sessions.len() - found.refused.len() > 1))
 }
 
-fn said(found: &DriftReport) -> String {
+fn said(found: &DriftReport, names: &JointNames) -> String {
     let mut parts: Vec<String> = found
         .sessions
         .iter()
-        .map(|drift| of(drift, "Log"))
+        .map(|drift| of(drift, "Log", names))
         .collect();
-    parts.extend(found.joints.iter().map(|drift| of(drift, "Joint")));
+    parts.extend(found.joints.iter().map(|drift| of(drift, "Joint", names)));
     let refused = found.refused.iter();
     parts.extend(refused.map(|(name, why)| format!("refused: {name}: {why}")));
     let held = found.held.iter();
     parts.extend(held.map(|(name, sentence)| format!("{name}: {sentence}")));
-    parts.join("\n\n")
+    names.in_text(&parts.join("\n\n"))
 }
 
 /// A value's table, and what its test says.
-fn of(drift: &Drift, heading: &str) -> String {
+fn of(drift: &Drift, heading: &str, names: &JointNames) -> String {
+    let path = names.in_text(&drift.path);
+    // A log may be called `joint2`, too.
+    let is_joint =
+        |own: &str| (heading == "Joint").then(|| own.strip_prefix("joint")?.parse().ok());
+    let name = |own: &str| {
+        let name = is_joint(own).flatten().and_then(|joint| names.joint(joint));
+        name.unwrap_or(own).to_string()
+    };
     let note = |out: bool| if out { "stands out" } else { "" };
     let columns: &[TableColumn<OneValue>] = &[
-        (heading, &|value| value.of.clone()),
-        (&drift.path, &|value| exact(value.fitted.value)),
+        (heading, &|value| name(&value.of)),
+        (&path, &|value| exact(value.fitted.value)),
         ("95 % interval", &|value| {
             format!(
                 "{} to {}",

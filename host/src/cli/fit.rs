@@ -18,6 +18,7 @@ use super::{Console, ExitStatus, input, show};
 use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
 use handstand::log::LogRequest;
 use handstand::model::edit::{moved, set_bounds};
+use handstand::model::{JointNames, ParameterPath};
 use handstand::report::{refitted_json, refitted_text};
 use handstand::{Model, Result, output};
 use serde_json::json;
@@ -51,22 +52,26 @@ pub fn run(args: &FitArgs, console: &Console) -> Result<ExitStatus> {
     let split = args.fit.motions(&model, &args.logs, console)?;
     let horizon = args.fit.judging.run.horizon;
     let refitted = refit(&model, &free, &split, horizon, &console.progress());
+    let names = JointNames::of(&model);
     let refitted = match refitted {
         Ok(refitted) => refitted,
-        Err(why) => return refuse(&why, console),
+        Err(why) => return refuse(&why, &names, console),
     };
     let text = with_refitted(&text, &args.model, &model, &refitted, &split)?;
     let before = "for the model as it was";
     let text = (text.as_str(), args.model.as_path());
-    write(&refitted, text, &[], before, &args.fit, console)
+    let written = (&[][..], before, &names);
+    write(&refitted, text, written, &args.fit, console)
 }
 
 /// The model's text with the bounds that were asked for.
 fn bounded(args: &FitArgs) -> Result<String> {
     let text = input::model_text(&args.model)?;
+    let model = Model::parse(&text, &args.model)?;
     let bounds = args.bounds.iter().map(|asked| {
         let (path, range) = asked.split_once('=').unwrap_or((asked, ""));
-        Ok((path.parse()?, Some(input::range("bounds", range)?)))
+        let path = ParameterPath::read(path, &model)?;
+        Ok((path, Some(input::range("bounds", range)?)))
     });
     match bounds.collect::<Result<Vec<_>>>()?.as_slice() {
         [] => Ok(text),
@@ -75,22 +80,22 @@ fn bounded(args: &FitArgs) -> Result<String> {
 }
 
 /// Says why there is no new model.
-pub fn refuse(why: &Undetermined, console: &Console) -> Result<ExitStatus> {
+pub fn refuse(why: &Undetermined, names: &JointNames, console: &Console) -> Result<ExitStatus> {
     let data = json!({
         "refused": why.to_string(),
         "blind": why.blind,
         "mixed": why.mixed,
     });
-    console.result(&data, || show::undetermined(why))?;
+    console.result(&data, || names.in_text(&show::undetermined(why)))?;
     Ok(ExitStatus::Refused)
 }
 
-/// Writes the new model and says what it holds; `before` says which model left the error before.
+/// Writes the new model and says what it holds: the effects that were added, which model left the
+/// error before, and what the joints are called.
 pub fn write(
     refitted: &Refitted,
     (text, model): (&str, &Path),
-    added: &[String],
-    before: &str,
+    (added, before, names): (&[String], &str, &JointNames),
     args: &input::RefitArgs,
     console: &Console,
 ) -> Result<ExitStatus> {
@@ -104,7 +109,7 @@ pub fn write(
         }
         console.data(&data)?;
     } else {
-        console.print(&refitted_text(refitted, before))?;
+        console.print(&refitted_text(refitted, before, names))?;
         console.say(&format!("wrote {}", args.output.display()));
     }
     Ok(ExitStatus::Done)

@@ -17,6 +17,8 @@ mod mjcf;
 mod next;
 mod simulators;
 mod space;
+mod space_export;
+mod space_names;
 mod spoiled;
 mod verdicts;
 

@@ -23,7 +23,7 @@ fn parents(draws: &mut Draws) -> Vec<Option<usize>> {
         .collect()
 }
 
-fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
+pub(crate) fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
     let parents = parents(draws);
     let mut text = String::from("<robot name=\"drawn\"><link name=\"base\"/>");
     for (joint, parent) in parents.iter().enumerate() {
@@ -60,7 +60,7 @@ fn urdf(draws: &mut Draws) -> (String, Vec<String>) {
 
 /// Bodies lie within those that carry them, so that joints are numbered as they are met; some
 /// bodies have two.
-fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
+pub(crate) fn mjcf(draws: &mut Draws) -> (String, Vec<String>) {
     let parents = parents(draws);
     let mut names = Vec::new();
     let mut text = format!(
@@ -113,7 +113,7 @@ fn body(
 }
 
 /// A model of a robot's file beside which it is, and its joints.
-fn model(text: &str, file: &Path, locked: &[String]) -> (Model, Vec<String>) {
+pub(crate) fn model(text: &str, file: &Path, locked: &[String]) -> (Model, Vec<String>) {
     let robot = file.file_name().unwrap().to_str().unwrap().to_string();
     let locked = locked.iter().map(|name| (name.clone(), 0.0)).collect();
     let plan = ImportPlan {
@@ -128,7 +128,7 @@ fn model(text: &str, file: &Path, locked: &[String]) -> (Model, Vec<String>) {
 }
 
 /// Accelerations by the model's rig.
-fn accelerations(model: &Model, [q, dq, tau]: &State) -> Vec<f64> {
+pub(crate) fn accelerations(model: &Model, [q, dq, tau]: &State) -> Vec<f64> {
     let tree = model.rig(false).tree.expect("a robot in space");
     let mut out = vec![0.0; q.len()];
     let held = vec![false; q.len()];
@@ -207,7 +207,7 @@ fn arms_of_their_owners_files_accelerate_as_in_pinocchio() {
 }
 
 /// A mast that slews, a boom that luffs below it, and a head that rolls: no two axes parallel.
-const CRANE: &str = r#"<robot name="crane"><link name="base"/>
+pub(crate) const CRANE: &str = r#"<robot name="crane"><link name="base"/>
 <link name="mast"><inertial><origin xyz="0.05 0 0"/><mass value="0.4"/>
 <inertia ixx="1e-3" iyy="1e-3" izz="2e-3" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <link name="boom"><inertial><origin xyz="0 0.02 -0.15"/><mass value="0.3"/>
@@ -226,7 +226,7 @@ const HIDDEN_NM_S_RAD: f64 = 0.06;
 
 /// A motion and the torques that it takes by Newton and Euler, viscous friction at the boom
 /// included, at 500 Hz, angles read to 1e-4 rad.
-fn swung(model: &Model, number: usize) -> String {
+pub(crate) fn swung(model: &Model, number: usize) -> String {
     let equations = SpatialEquations::new(&model.tree().unwrap());
     let mut work = SpatialWorkspace::default();
     let mut text = String::from(
@@ -266,7 +266,7 @@ fn swung(model: &Model, number: usize) -> String {
     text
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> (Value, String) {
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (Value, String) {
     let mut command = Command::new(program());
     let output = command
         .current_dir(folder)

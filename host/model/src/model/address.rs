@@ -1,8 +1,10 @@
-//! Reads the address of a number as people write it: `link1.mass_kg`, `coulomb@1.torque_nm`.
+//! Reads the address of a number as people write it: `link1.mass_kg`, `coulomb@1.torque_nm`; of a
+//! robot in space by names, too: `link.boom.mass_kg`, `coulomb@luff.torque_nm`.
 
 use super::field::{JointField, LinkField};
 use super::path::ParameterPath;
 use super::path_reason::PathReason;
+use super::{Model, Robot};
 use crate::effects::{self, Axis, EffectInfo};
 use crate::error::Error;
 use std::str::FromStr;
@@ -17,6 +19,49 @@ impl FromStr for ParameterPath {
     fn from_str(text: &str) -> Result<Self, Error> {
         read(text).map_err(|reason| Error::Usage(Box::new(reason)))
     }
+}
+
+impl ParameterPath {
+    /// Reads an address in a model: of a robot in space `link.boom.mass_kg`,
+    /// `joint.luff.gain_per_rad` and `coulomb@luff.torque_nm` name what `link2`, `joint2` and
+    /// `coulomb@2` number.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with a [`PathReason`].
+    pub fn read(text: &str, model: &Model) -> Result<Self, Error> {
+        read_in(text, model.robot.as_ref()).map_err(|reason| Error::Usage(Box::new(reason)))
+    }
+}
+
+/// An address, by numbers or by the names of a robot in space.
+pub(super) fn read_in(text: &str, robot: Option<&Robot>) -> Result<ParameterPath, PathReason> {
+    // A name may have dots, a key has none.
+    let (Some(robot), Some((owner, key))) = (robot, text.rsplit_once('.')) else {
+        return read(text);
+    };
+    let at = |what: &'static str, name: &str, names: &[String]| {
+        let found = names.iter().position(|own| own == name);
+        let unknown = || PathReason::NotOfRobot {
+            text: text.into(),
+            what,
+            name: name.into(),
+            known: names.to_vec(),
+        };
+        found.map(|index| index + 1).ok_or_else(unknown)
+    };
+    let numbered = if let Some(name) = owner.strip_prefix("link.") {
+        format!("link{}.{key}", at("link", name, &robot.links)?)
+    } else if let Some(name) = owner.strip_prefix("joint.") {
+        format!("joint{}.{key}", at("joint", name, &robot.joints)?)
+    } else {
+        match owner.split_once('@') {
+            Some((id, name)) if name != "all" && counted(name).is_none() => {
+                format!("{id}@{}.{key}", at("joint", name, &robot.joints)?)
+            }
+            _ => return read(text),
+        }
+    };
+    read(&numbered)
 }
 
 pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {

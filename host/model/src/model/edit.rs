@@ -102,7 +102,7 @@ fn with_values(
     for (parameter, value) in values {
         let table = parameter
             .get(&model)
-            .and_then(|_| owner(&mut document, *parameter))
+            .and_then(|_| owner(&mut document, *parameter, &model))
             .ok_or_else(|| misfit(path, &format!("there is no `{parameter}`")))?;
         if let ParameterPath::Link { index, .. } = parameter {
             about_centre_of_mass(table, model.links[*index].inertia_kg_m2);
@@ -185,14 +185,24 @@ fn misfit(path: &Path, what: &str) -> Error {
     )
 }
 
-/// The table that holds the parameter.
-fn owner(document: &mut DocumentMut, path: ParameterPath) -> Option<&mut dyn TableLike> {
+/// The table that holds the parameter of a model.
+fn owner<'a>(
+    document: &'a mut DocumentMut,
+    path: ParameterPath,
+    model: &Model,
+) -> Option<&'a mut dyn TableLike> {
     match path {
         ParameterPath::Link { index, .. } => tables(document.get_mut("link")?).nth(index),
         ParameterPath::Joint { index, .. } => tables(document.get_mut("joint")?).nth(index),
         ParameterPath::Effect { id, joint, .. } => tables(document.get_mut("effect")?).find(|t| {
             // Neither a number stands there where it acts on all, nor where it acts on the rig.
-            let at = t.get("joint").and_then(Item::as_integer);
+            let at = t.get("joint");
+            let named = at
+                .and_then(Item::as_str)
+                .and_then(|name| model.joint_named(name));
+            let at = at
+                .and_then(Item::as_integer)
+                .or(named.map(|joint| joint as i64 + 1));
             t.get("kind").and_then(Item::as_str) == Some(id) && at == joint.map(|j| j as i64 + 1)
         }),
     }

@@ -39,6 +39,18 @@ pub enum PathReason {
         /// The effect.
         id: &'static str,
     },
+    /// The robot in space has no such link or joint.
+    #[error("`{text}`: the robot has no {what} `{name}`")]
+    NotOfRobot {
+        /// The text.
+        text: String,
+        /// `link` or `joint`.
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// Those that it has.
+        known: Vec<String>,
+    },
     /// It names no joint for an effect of one joint.
     #[error("`{text}` does not say at which joint")]
     MissingJoint {
@@ -57,6 +69,7 @@ impl Reason for PathReason {
                 "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`".into()
             }
             PathReason::UnknownName { name, known, .. } => suggest(name, known),
+            PathReason::NotOfRobot { name, known, .. } => suggest(name, known),
             PathReason::NoJoint { .. } => "joints count from 1; `all` are the driven ones".into(),
             PathReason::WholeRig { text, id } => format!("write `{id}.{}`", key(text)),
             PathReason::MissingJoint { text, id } => {

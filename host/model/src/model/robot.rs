@@ -31,16 +31,18 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// What `[rig] robot` names, if it names anything; `model` is the model's file.
+    /// What `[rig] robot` names, if it names anything; `model` is the model's file, `given` the
+    /// robot's text where it is not to be read from there.
     ///
     /// # Errors
     /// A file that cannot be read, is no robot, or is another than the one noted.
-    pub(super) fn read(rig: &Table, model: &Path) -> Result<Option<Robot>> {
+    pub(super) fn read(rig: &Table, model: &Path, given: Option<&str>) -> Result<Option<Robot>> {
         let Some(file) = rig.text("robot")? else {
             return Ok(None);
         };
         let path = model.parent().unwrap_or(Path::new("")).join(file);
-        let text = std::fs::read_to_string(&path).map_err(|source| {
+        let text = given.map_or_else(|| std::fs::read_to_string(&path), |text| Ok(text.into()));
+        let text = text.map_err(|source| {
             let file = path.display().to_string();
             rig.bad(
                 "robot",
@@ -96,12 +98,13 @@ pub(super) fn link_values(tree: &SpatialTree, index: usize) -> Link {
         length_m: next.map_or(com_m, |next| next.place.translation.vector.norm()),
         com_m,
         mass_kg: link.mass_kg,
-        inertia_kg_m2: about_axis(link),
+        // Noise below 0 is none, and stays out of proportions.
+        inertia_kg_m2: about_axis(link).max(0.0),
     }
 }
 
 /// Moment of inertia about a line through the centre of mass along the joint's axis, kg m^2.
-fn about_axis(link: &SpatialLink) -> f64 {
+pub(super) fn about_axis(link: &SpatialLink) -> f64 {
     let axis = link.axis.into_inner();
     axis.dot(&(link.inertia_kg_m2 * axis))
 }
@@ -157,6 +160,12 @@ impl Model {
                 ),
             )),
         }
+    }
+
+    /// The joint that a robot in space calls so, counted from 0.
+    pub fn joint_named(&self, name: &str) -> Option<usize> {
+        let robot = self.robot.as_ref()?;
+        robot.joints.iter().position(|own| own == name)
     }
 
     /// What messages call a joint beside its number: the name in the robot's file, if there is one.

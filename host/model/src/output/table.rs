@@ -1,6 +1,8 @@
 //! Rows as a table for people, and as CSV.
 
-use comfy_table::{ColumnConstraint, ContentArrangement, Table, TableComponent, Width, presets};
+use comfy_table::{
+    ColumnConstraint, ContentArrangement, Row, Table, TableComponent, Width, presets,
+};
 
 /// Longest word that is never broken.
 const MOST_UNBROKEN: usize = 40;
@@ -30,6 +32,15 @@ pub fn table_of<'r, T: 'r>(
     let mut table = plain_table(columns.iter().map(|(heading, _)| *heading));
     for row in rows {
         table.add_row(columns.iter().map(|(_, cell)| cell(row)));
+    }
+    table
+}
+
+/// The table with this text in place of each row's cells.
+pub fn reworded(mut table: Table, text: impl Fn(&str) -> String) -> Table {
+    for row in table.row_iter_mut() {
+        let cells: Vec<String> = row.cell_iter().map(|cell| text(&cell.content())).collect();
+        *row = Row::from(cells);
     }
     table
 }

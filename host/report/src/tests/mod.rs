@@ -4,6 +4,7 @@ pub(super) mod sample;
 
 use super::*;
 use crate::diagnose::Verdict;
+use crate::model::JointNames;
 use proptest::prelude::*;
 
 #[test]
@@ -155,7 +156,7 @@ fn sample_for_the_eye() {
 
 #[test]
 fn text_of_a_named_effect() {
-    insta::assert_snapshot!(diagnosis_text(&sample::diagnosis()), @r"
+    insta::assert_snapshot!(diagnosis_text(&sample::diagnosis(), &JointNames::default()), @r"
     Verdict: named. The model lacks Coulomb friction at joint 1 and Backlash at joint 1.
     Joint 1 resists with about 0.082 N m at every speed, which the model leaves out.
     With it the error on held-out motions falls from 41.2 to 6.31 mrad; the floor is 5.1 mrad.
@@ -217,7 +218,7 @@ fn text_of_unfit_data() {
     diagnosis.summary = vec!["The joint never moved.".into()];
     diagnosis.warnings.clear();
     diagnosis.next = vec!["Record a motion of at least 0.5 rad.".into()];
-    insta::assert_snapshot!(diagnosis_text(&diagnosis), @r"
+    insta::assert_snapshot!(diagnosis_text(&diagnosis, &JointNames::default()), @r"
     Verdict: unfit. These data can't answer the question.
     The joint never moved.
 
@@ -307,7 +308,7 @@ proptest! {
             }
         }
         prop_assert!(!page.contains("NaN"));
-        let text = diagnosis_text(report.diagnosis.as_ref().unwrap());
+        let text = diagnosis_text(report.diagnosis.as_ref().unwrap(), &JointNames::default());
         prop_assert!(!text.contains("NaN"));
         json(&report);
     }

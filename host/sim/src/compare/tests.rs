@@ -230,7 +230,7 @@ fn text_sets_models_side_by_side_and_tells_the_last_in_full() {
     better.links[0].inertia_kg_m2 = 1.1e-3;
     let other = compare(&better, "other", &motions, None);
     let all = [base, other];
-    let text = text(&all);
+    let text = text(&all, &crate::model::JointNames::default());
     for part in [
         " base ",
         "rms, mrad",
@@ -286,9 +286,17 @@ fn ranges_of_angle_are_told_in_the_unit_of_the_log() {
 fn no_motion_at_all_is_no_panic() {
     let nothing = compare(&pendulum(), "nothing", &[], None);
     assert_eq!(nothing.signals[0].rms, 0.0);
-    assert!(text(std::slice::from_ref(&nothing)).contains("nothing"));
+    assert!(
+        text(
+            std::slice::from_ref(&nothing),
+            &crate::model::JointNames::default()
+        )
+        .contains("nothing")
+    );
     assert_eq!(waterfall(&[nothing]).lines().count(), 2);
-    assert!(text(&[]).is_empty() && waterfall(&[]).is_empty());
+    assert!(
+        text(&[], &crate::model::JointNames::default()).is_empty() && waterfall(&[]).is_empty()
+    );
 }
 
 proptest! {

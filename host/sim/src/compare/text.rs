@@ -3,20 +3,23 @@
 use super::closed_loop::closed_loop_text;
 use super::result::{Comparison, SignalError};
 use crate::fitting::in_windows;
-use crate::model::MeasuredSignal;
+use crate::model::{JointNames, MeasuredSignal};
 use crate::output::number::{NONE, mrad_in_column};
+use crate::output::table::reworded;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
 
 /// Width of the longest bar of a waterfall.
 const BAR: usize = 40;
 
-/// Models side by side, one column each; the last one's failures and failed tests in full.
-pub fn text(comparisons: &[Comparison]) -> String {
+/// Models side by side, one column each; the last one's failures and failed tests in full. Joints
+/// are called as `names` has them.
+pub fn text(comparisons: &[Comparison], names: &JointNames) -> String {
     let Some((last, others)) = comparisons.split_last() else {
         return String::new();
     };
-    let mut text = format!("{}\n{LEGEND}\n", table(comparisons));
+    let table = reworded(table(comparisons), |cell| names.in_text(cell));
+    let mut text = format!("{table}\n{LEGEND}\n");
     if !others.is_empty() {
         let _ = write!(
             text,
@@ -50,7 +53,7 @@ pub fn text(comparisons: &[Comparison]) -> String {
             let _ = writeln!(text, "  Not passed{joint}: {}; {}", test.name, test.meaning);
         }
     }
-    text
+    names.in_text(&text)
 }
 
 const LEGEND: &str = "rms: typical error; floor: what noise and resolution alone leave; fit: 100 % is a perfect model";

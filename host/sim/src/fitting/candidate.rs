@@ -271,13 +271,18 @@ fn joint(effect: Effect, at: Option<&str>, model: &Model) -> Result<Option<usize
                 Err(CandidateError::NoDrivenJoint { id })
             };
         }
-        (_, Some(at)) => match at.parse::<usize>() {
-            Ok(joint) if (1..=count).contains(&joint) => joint - 1,
-            _ => {
-                let joint = at.to_string();
-                return Err(CandidateError::UnknownJoint { joint, count });
-            }
-        },
+        (_, Some(at)) => {
+            let numbered = at.parse::<usize>().ok();
+            let numbered = numbered.filter(|joint| (1..=count).contains(joint));
+            let joint = numbered.map(|joint| joint - 1);
+            let unknown = || CandidateError::UnknownJoint {
+                joint: at.to_string(),
+                count,
+            };
+            joint
+                .or_else(|| model.joint_named(at))
+                .ok_or_else(unknown)?
+        }
     };
     let drive = &model.joints[joint].drive;
     let wanted = match scope {

@@ -41,7 +41,7 @@ impl From<FreeError> for Error {
 pub fn free_parameters(model: &Model, named: &[String]) -> Result<Vec<ParameterPath>, FreeError> {
     let mut free: Vec<ParameterPath> = Vec::new();
     for text in named {
-        let path: ParameterPath = text.parse()?;
+        let path = ParameterPath::read(text, model)?;
         let value = path
             .get(model)
             .ok_or_else(|| FreeError::NotInModel(text.clone()))?;

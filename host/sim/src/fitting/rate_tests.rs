@@ -83,7 +83,7 @@ fn a_gyro_is_a_line_of_its_own_in_rad_per_second() {
     // The error of the whole log stays one of angles.
     assert_eq!(compared.quantity(), MeasuredSignal::Angle);
     assert_eq!(compared.horizons.last().unwrap().rms, angle.rms);
-    let said = text(&[compared]);
+    let said = text(&[compared], &crate::model::JointNames::default());
     for line in [
         "joint 1: rms, mrad ",
         "joint 1, rate: rms, mrad/s ",

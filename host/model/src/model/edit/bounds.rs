@@ -2,7 +2,7 @@
 
 use super::{checked, document, misfit};
 use crate::error::Result;
-use crate::model::ParameterPath;
+use crate::model::{Model, ParameterPath};
 use std::path::Path;
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike};
 
@@ -15,11 +15,20 @@ pub fn set_bounds(
     path: &Path,
     bounds: &[(ParameterPath, Option<(f64, f64)>)],
 ) -> Result<String> {
+    let model = Model::parse(text, path)?;
     let mut document = document(text, path)?;
     let is_needless = |bounds: Option<&dyn TableLike>| bounds.is_none_or(|table| table.is_empty());
     let table = table(&mut document).ok_or_else(|| misfit(path, "`fit.bounds` is no table"))?;
     for (address, bounds) in bounds {
         let key = address.to_string();
+        // A robot in space may have it under names.
+        let is_other = |own: &str| {
+            own != key && ParameterPath::read(own, &model).is_ok_and(|own| own == *address)
+        };
+        let keys = table.iter().map(|(own, _)| own.to_string());
+        for other in keys.filter(|own| is_other(own)).collect::<Vec<_>>() {
+            table.remove(&other);
+        }
         match bounds {
             Some((low, high)) => {
                 let ends = Array::from_iter([*low, *high]);

@@ -73,7 +73,7 @@ pub fn renew_provenance(text: &str, path: &Path, record: &FitRecord) -> Result<S
         let Some((first, ..)) = own.intervals.first() else {
             continue;
         };
-        let table = owner(&mut document, *first)
+        let table = owner(&mut document, *first, &model)
             .ok_or_else(|| misfit(path, &format!("there is no `{first}`")))?;
         replace(table, own.table(|path| path.key().to_string()));
     }

@@ -3,6 +3,7 @@
 use crate::dynamics::SlideAxis;
 use crate::model::{EffectInstance, Model};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// A part of a model that an export leaves out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -11,8 +12,27 @@ pub struct NotCarried {
     pub part: String,
     /// Joint, counted from 1; none where the whole rig is meant.
     pub joint: Option<usize>,
+    /// What a robot in space calls that joint.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_name: Option<String>,
     /// Why.
-    pub why: &'static str,
+    pub why: Cow<'static, str>,
+}
+
+impl NotCarried {
+    /// A part of a joint, counted from 1, or of the whole rig.
+    pub(super) fn new(
+        part: impl Into<String>,
+        joint: Option<usize>,
+        why: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        NotCarried {
+            part: part.into(),
+            joint,
+            joint_name: None,
+            why: why.into(),
+        }
+    }
 }
 
 /// Direction of a slide in the frame of its link, whose line points down: x to the right, z up.
@@ -33,10 +53,8 @@ pub(super) fn value(model: &Model, id: &str, joint: usize, index: usize) -> Opti
 pub(super) fn not_carried(model: &Model, held: &[&str], why: &'static str) -> Vec<NotCarried> {
     let missing = |e: &&EffectInstance| !held.contains(&e.effect.info().id);
     let missing = model.effects.iter().filter(missing);
-    let said = |e: &EffectInstance| NotCarried {
-        part: e.effect.info().id.to_string(),
-        joint: e.joint.map(|joint| joint + 1),
-        why,
+    let said = |e: &EffectInstance| {
+        NotCarried::new(e.effect.info().id, e.joint.map(|joint| joint + 1), why)
     };
     missing.map(said).collect()
 }

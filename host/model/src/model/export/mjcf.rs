@@ -55,6 +55,7 @@ pub fn mjcf(model: &Model) -> Exported {
     actuators(&mut text, model);
     text.push_str("</mujoco>\n");
     Exported {
+        relative_files: Vec::new(),
         text,
         not_carried: left_out(model),
     }
@@ -198,21 +199,15 @@ fn left_out(model: &Model) -> Vec<NotCarried> {
     let mut missing = not_carried(model, &HELD, "no element of MJCF is written for it");
     for (joint, drive) in model.joints.iter().map(|joint| &joint.drive).enumerate() {
         if matches!(drive, Drive::Position { .. } | Drive::Speed { .. }) {
-            missing.push(NotCarried {
-                part: drive.name().to_string(),
-                joint: Some(joint + 1),
-                why: "the limit of the duty: MuJoCo limits the torque, back-EMF included",
-            });
+            let why = "the limit of the duty: MuJoCo limits the torque, back-EMF included";
+            missing.push(NotCarried::new(drive.name(), Some(joint + 1), why));
         }
         if drive
             .motor()
             .is_some_and(|motor| motor.nominal_supply_v.is_some())
         {
-            missing.push(NotCarried {
-                part: "nominal_supply_v".to_string(),
-                joint: Some(joint + 1),
-                why: "MuJoCo's actuators know no supply",
-            });
+            let why = "MuJoCo's actuators know no supply";
+            missing.push(NotCarried::new("nominal_supply_v", Some(joint + 1), why));
         }
     }
     missing

@@ -36,6 +36,7 @@ pub fn urdf(model: &Model) -> Exported {
     joints(&mut text, model, &rig);
     text.push_str("</robot>\n");
     Exported {
+        relative_files: Vec::new(),
         text,
         not_carried: left_out(model, &rig),
     }
@@ -107,19 +108,13 @@ fn limit(driven: bool) -> String {
 fn left_out(model: &Model, rig: &Rig) -> Vec<NotCarried> {
     let mut missing = not_carried(model, &HELD, "URDF has no place for it");
     if rig.chain.gravity_m_s2 != 0.0 {
-        missing.push(NotCarried {
-            part: "gravity_m_s2".to_string(),
-            joint: None,
-            why: "gravity is the simulator's",
-        });
+        let why = "gravity is the simulator's";
+        missing.push(NotCarried::new("gravity_m_s2", None, why));
     }
     for (joint, drive) in model.joints.iter().map(|joint| &joint.drive).enumerate() {
         if drive.is_driven() {
-            missing.push(NotCarried {
-                part: drive.name().to_string(),
-                joint: Some(joint + 1),
-                why: "URDF has no drives",
-            });
+            let why = "URDF has no drives";
+            missing.push(NotCarried::new(drive.name(), Some(joint + 1), why));
         }
     }
     missing

@@ -47,6 +47,7 @@ fn impossible(moments: &Matrix3<f64>, noise: f64) -> Option<String> {
     };
     Some(format!(
         "its principal moments {least:.3e}, {middle:.3e} and {most:.3e} kg m^2 {what}; no body has \
-         such, they are taken as written"
+         such, they are taken as written: see in the CAD that they are about the centre of mass, \
+         and which sign its products have"
     ))
 }

@@ -7,16 +7,16 @@ mod choice;
 mod frame;
 mod groups;
 mod inertia;
-mod mjcf;
+pub(super) mod mjcf;
 mod planar;
-mod prefixes;
-mod space;
+pub(super) mod prefixes;
+pub(super) mod space;
 #[cfg(test)]
 mod tests;
-mod tree;
+pub(super) mod tree;
 mod urdf;
 mod write;
-mod xml;
+pub(super) mod xml;
 
 pub use space::Locked;
 pub use tree::Remark;
@@ -30,7 +30,7 @@ use space::in_space;
 use std::path::Path;
 use tree::{RobotTree, TreeDrive};
 use write::RobotName;
-use xml::XmlFile;
+use xml::{Element, XmlFile};
 
 /// Most bodies of a robot.
 const MOST_BODIES: usize = 10_000;
@@ -97,7 +97,7 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
             toml,
             joints: joints.collect(),
             left_out: found.left_out,
-            notes: Vec::new(),
+            notes: found.notes,
         });
     }
     let mut chain = planar_chain(&tree, &plan.joints, &name)?;
@@ -118,16 +118,7 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
 /// `driven`.
 fn robot(text: &str, path: &Path, driven: bool) -> Result<(&'static str, RobotTree)> {
     let text = declared(text);
-    let file = XmlFile::parse(path, &text)?;
-    let root = file.root();
-    let (format, mut tree) = match root.tag() {
-        "robot" => ("urdf", urdf::tree(root)?),
-        "mujoco" => ("mjcf", mjcf::tree(root)?),
-        other => {
-            let what = format!("<{other}> is no robot's root");
-            return Err(root.wrong(what, "URDF begins with <robot>, MJCF with <mujoco>"));
-        }
-    };
+    let (format, mut tree) = tree_of(XmlFile::parse(path, &text)?.root())?;
     if tree.bodies.len() > MOST_BODIES {
         let what = format!("{}: {} bodies", path.display(), tree.bodies.len());
         return Err(Error::usage(
@@ -144,6 +135,21 @@ fn robot(text: &str, path: &Path, driven: bool) -> Result<(&'static str, RobotTr
         }
     }
     Ok((format, tree))
+}
+
+/// The robot of a file's root, and the file's format.
+///
+/// # Errors
+/// What the formats' readers refuse.
+pub(super) fn tree_of(root: Element) -> Result<(&'static str, RobotTree)> {
+    match root.tag() {
+        "robot" => Ok(("urdf", urdf::tree(root)?)),
+        "mujoco" => Ok(("mjcf", mjcf::tree(root)?)),
+        other => {
+            let what = format!("<{other}> is no robot's root");
+            Err(root.wrong(what, "URDF begins with <robot>, MJCF with <mujoco>"))
+        }
+    }
 }
 
 /// A robot in space, and what its file calls joints and links.

@@ -4,13 +4,14 @@
 use super::xml::parsed;
 use roxmltree::Error;
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Most prefixes that are declared in a file's stead.
 const MOST: usize = 32;
 
 /// The text with each prefix that it does not declare declared in its first element, as a namespace
 /// of that name. Lines stay; columns of the first element's line move.
-pub(super) fn declared(text: &str) -> Cow<'_, str> {
+pub(in crate::model) fn declared(text: &str) -> Cow<'_, str> {
     let mut text = Cow::Borrowed(text);
     for _ in 0..MOST {
         let Err(Error::UnknownNamespace(prefix, _)) = parsed(&text) else {
@@ -23,6 +24,12 @@ pub(super) fn declared(text: &str) -> Cow<'_, str> {
             .insert_str(at, &format!(" xmlns:{prefix}=\"{prefix}\""));
     }
     text
+}
+
+/// Where [`declared`] has added to a text, bytes of what it made of it.
+pub(in crate::model) fn added(text: &str, declared: &str) -> Range<usize> {
+    let at = behind_first_tag(text).unwrap_or(0);
+    at..at + declared.len() - text.len()
 }
 
 /// Where the name of the first element ends.

@@ -5,20 +5,29 @@ use super::tree::{
 };
 use crate::dynamics::{SpatialLink, SpatialTree};
 use crate::error::{Error, Place, Result};
+use crate::model::robot::about_axis;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
+
+/// A moment so little below 0 beside the mass is noise, m^2.
+const NOISE_M2: f64 = 1e-9;
 
 /// A joint that is held, and where, rad or m.
 pub type Locked = (String, f64);
 
 /// The tree, and how the file names its joints and links.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct InSpace {
+pub(in crate::model) struct InSpace {
     pub tree: SpatialTree,
     /// Of each link: the joint that carries it.
     pub joints: Vec<TreeJoint>,
     /// Of each link: the body's name and line.
     pub bodies: Vec<(String, usize)>,
+    /// Of each body of the file: the link to which it is fixed, none for the base, and where its
+    /// frame stands in that link's.
+    pub fixed: Vec<(Option<usize>, Isometry3<f64>)>,
     pub left_out: Vec<Remark>,
+    /// What the model holds and no body has: impossible moments.
+    pub notes: Vec<Remark>,
 }
 
 /// Builds the tree link by link.
@@ -26,9 +35,6 @@ struct Builder<'a> {
     robot: &'a RobotTree,
     locked: &'a [Locked],
     file: &'a str,
-    /// Of each body: the link to which it is fixed, none for the base, and where it stands in that
-    /// link's frame.
-    fixed: Vec<(Option<usize>, Isometry3<f64>)>,
     inertials: Vec<Inertial>,
     found: InSpace,
 }
@@ -39,7 +45,11 @@ struct Builder<'a> {
 /// # Errors
 /// A joint that is locked and not there, one that moves in several ways, and links that would move
 /// without mass.
-pub(super) fn in_space(robot: &RobotTree, locked: &[Locked], file: &str) -> Result<InSpace> {
+pub(in crate::model) fn in_space(
+    robot: &RobotTree,
+    locked: &[Locked],
+    file: &str,
+) -> Result<InSpace> {
     let names = || robot.bodies.iter().flat_map(|body| &body.joints);
     for (name, _) in locked {
         if !names().any(|joint| joint.name == *name) {
@@ -54,7 +64,6 @@ pub(super) fn in_space(robot: &RobotTree, locked: &[Locked], file: &str) -> Resu
         robot,
         locked,
         file,
-        fixed: Vec::with_capacity(robot.bodies.len()),
         inertials: Vec::new(),
         found: InSpace {
             tree: SpatialTree {
@@ -63,7 +72,9 @@ pub(super) fn in_space(robot: &RobotTree, locked: &[Locked], file: &str) -> Resu
             },
             joints: Vec::new(),
             bodies: Vec::new(),
+            fixed: Vec::with_capacity(robot.bodies.len()),
             left_out: Vec::new(),
+            notes: Vec::new(),
         },
     };
     for body in 0..robot.bodies.len() {
@@ -78,7 +89,7 @@ impl Builder<'_> {
         let body = &robot.bodies[index];
         let (mut owner, mut stands) = match body.parent {
             Some(parent) => {
-                let (owner, stands) = self.fixed[parent];
+                let (owner, stands) = self.found.fixed[parent];
                 (owner, stands * body.pose)
             }
             None => (None, body.pose),
@@ -108,7 +119,7 @@ impl Builder<'_> {
             owner = Some(self.inertials.len() - 1);
             stands = Isometry3::from(anchor.inverse());
         }
-        self.fixed.push((owner, stands));
+        self.found.fixed.push((owner, stands));
         if owner.is_some() {
             self.sound(index)?;
         }
@@ -169,7 +180,7 @@ impl Builder<'_> {
             let remark = Remark::new("gravcomp", Some(&body.name), why).on(body.line);
             self.found.left_out.push(remark);
         }
-        self.found.left_out.extend(body.notes.iter().cloned());
+        self.found.notes.extend(body.notes.iter().cloned());
     }
 
     fn finish(mut self) -> Result<InSpace> {
@@ -208,7 +219,32 @@ impl Builder<'_> {
                 "give it an <inertial>, or lock its joint",
             ));
         }
+        self.possible()?;
         Ok(self.found)
+    }
+
+    /// Refuses moments about a joint's axis that are below 0 by more than noise.
+    fn possible(&self) -> Result<()> {
+        let links = self.found.tree.links.iter().zip(&self.found.bodies);
+        for ((link, (name, line)), joint) in links.zip(&self.found.joints) {
+            let moment = about_axis(link);
+            if moment < -NOISE_M2 * link.mass_kg {
+                let place = Place {
+                    line: Some(*line),
+                    ..Place::file(self.file)
+                };
+                return Err(Error::data(
+                    place,
+                    format!(
+                        "the link {name}, with what is fixed to it, has a moment of inertia of \
+                         {moment:.3e} kg m^2 about the axis of {}",
+                        joint.name
+                    ),
+                    "mend the products of inertia: no body has a moment below 0",
+                ));
+            }
+        }
+        Ok(())
     }
 }
 

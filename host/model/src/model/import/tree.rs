@@ -51,7 +51,7 @@ impl fmt::Display for Remark {
 
 /// What is wrong with a part of the file: it refuses the robot only where the chain needs it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Fault {
+pub(in crate::model) struct Fault {
     /// Index of the body.
     pub body: usize,
     pub part: FaultyPart,
@@ -62,7 +62,7 @@ pub(super) struct Fault {
 
 /// Of what a fault is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FaultyPart {
+pub(in crate::model) enum FaultyPart {
     /// Where a body stands on its parent.
     Pose,
     /// What it weighs.
@@ -97,7 +97,7 @@ impl Fault {
 
 /// Mass, its centre, and the moments about that.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Inertial {
+pub(in crate::model) struct Inertial {
     /// kg.
     pub mass_kg: f64,
     /// Centre of mass in the body's frame, m.
@@ -150,7 +150,7 @@ impl Inertial {
 
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum JointMotion {
+pub(in crate::model) enum JointMotion {
     /// About an axis.
     Hinge,
     /// Along an axis.
@@ -161,7 +161,7 @@ pub(super) enum JointMotion {
 
 /// What drives a joint in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) enum TreeDrive {
+pub(in crate::model) enum TreeDrive {
     /// Nothing.
     #[default]
     None,
@@ -185,10 +185,14 @@ pub(super) enum TreeDrive {
 
 /// A joint between a body and its parent.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct TreeJoint {
+pub(in crate::model) struct TreeJoint {
     pub name: String,
     /// Line of its element.
     pub line: usize,
+    /// Byte at which its element begins.
+    pub at: usize,
+    /// Byte at which the actuator begins that drives it, if the file has one.
+    pub actuator_at: Option<usize>,
     pub motion: JointMotion,
     /// In the body's frame, of length 1.
     pub axis: Vector3<f64>,
@@ -215,6 +219,8 @@ impl TreeJoint {
         TreeJoint {
             name,
             line,
+            at: 0,
+            actuator_at: None,
             motion,
             axis,
             anchor_m: Point3::origin(),
@@ -240,10 +246,12 @@ impl TreeJoint {
 
 /// A rigid body.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct TreeBody {
+pub(in crate::model) struct TreeBody {
     pub name: String,
     /// Line of its element.
     pub line: usize,
+    /// Byte at which its element begins.
+    pub at: usize,
     /// Index of the body that carries it, always a smaller one; none for the world.
     pub parent: Option<usize>,
     /// In the parent's frame, with every joint at its reference.
@@ -259,7 +267,7 @@ pub(super) struct TreeBody {
 
 /// A robot, and what its file says beyond bodies and joints.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct RobotTree {
+pub(in crate::model) struct RobotTree {
     pub name: String,
     /// Parents before children; the first is the world, or what stands in it.
     pub bodies: Vec<TreeBody>,

@@ -75,6 +75,7 @@ pub(super) fn tree(robot: Element) -> Result<RobotTree> {
         let mut body = TreeBody {
             name: links[link].required("name")?.to_string(),
             line: links[link].line(),
+            at: links[link].at(),
             parent: None,
             pose: Isometry3::identity(),
             inertial: Inertial::NONE,
@@ -244,7 +245,10 @@ fn new_joint<'a>(
         let why = "a joint here follows no other: it moves freely or is held";
         left_out.push(Remark::new("mimic", Some(name), why).on(mimic.line()));
     }
-    let made = TreeJoint::new(name.to_string(), joint.line(), motion, Vector3::x());
+    let made = TreeJoint {
+        at: joint.at(),
+        ..TreeJoint::new(name.to_string(), joint.line(), motion, Vector3::x())
+    };
     Ok(Some((made, kind)))
 }
 

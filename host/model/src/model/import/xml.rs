@@ -12,7 +12,7 @@ const MOST_NODES: u32 = 1_000_000;
 const LARGEST: f64 = 1e9;
 
 /// A file and its elements.
-pub(super) struct XmlFile<'a> {
+pub(in crate::model) struct XmlFile<'a> {
     pub path: &'a Path,
     pub document: Document<'a>,
     /// Where each line but the first begins: positions are asked for each element.
@@ -21,7 +21,7 @@ pub(super) struct XmlFile<'a> {
 
 /// An element with its file.
 #[derive(Clone, Copy)]
-pub(super) struct Element<'a> {
+pub(in crate::model) struct Element<'a> {
     pub file: &'a XmlFile<'a>,
     pub node: Node<'a, 'a>,
 }
@@ -90,9 +90,14 @@ impl<'a> Element<'a> {
         own.is_some() && own != root.tag_name().namespace()
     }
 
+    /// Byte at which it begins.
+    pub fn at(&self) -> usize {
+        self.node.range().start
+    }
+
     /// Line on which it begins.
     pub fn line(&self) -> usize {
-        let at = self.node.range().start;
+        let at = self.at();
         1 + self.file.lines.partition_point(|line| *line <= at)
     }
 

@@ -57,7 +57,7 @@ fn value_at(
     span: Option<Range<usize>>,
     model: &Model,
 ) -> Result<(ParameterPath, f64)> {
-    let parsed = crate::model::address::read(text);
+    let parsed = crate::model::address::read_in(text, model.robot.as_ref());
     let parameter = parsed.map_err(|reason| fit.refused(span.clone(), reason))?;
     let path = text.to_string();
     let value = parameter.get(model);
@@ -78,7 +78,9 @@ fn bounds(fit: &Table, model: &Model) -> Result<Bounds> {
             .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let possible = parameter.possible();
         let path = key.to_string();
-        let reason = if !(low < high && low < possible.1 && high > possible.0) {
+        let reason = if bounds.iter().any(|(own, _)| *own == parameter) {
+            ModelReason::FreeTwice { path }
+        } else if !(low < high && low < possible.1 && high > possible.0) {
             ModelReason::NoBounds {
                 path,
                 low,

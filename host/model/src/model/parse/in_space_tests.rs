@@ -196,3 +196,112 @@ fn what_makes_no_robot_is_refused_with_the_remedy() {
             .contains("and gains hold chains")
     );
 }
+
+#[test]
+fn addresses_name_links_and_joints() {
+    let (_folder, file) = folder();
+    let links = "[[link]]\nname = \"mast\"\n[[link]]\nname = \"boom\"\nmass_kg = 1.5\n\
+                 [[link]]\nname = \"cart\"\n";
+    let text = MODEL.replace(
+        "[[joint]]\nname = \"slew\"",
+        &format!("{links}[[joint]]\nname = \"slew\""),
+    ) + "[[effect]]\nkind = \"viscous\"\njoint = \"luff\"\ncoefficient_nm_s_rad = 0.5\n\
+         [fit]\nfree = [\"link.boom.mass_kg\", \"viscous@luff.coefficient_nm_s_rad\"]\n\
+         [fit.bounds]\n\"link.boom.mass_kg\" = [1.0, 2.0]\n";
+    let model = Model::parse(&text, &file).unwrap();
+    let free: Vec<String> = model.free.iter().map(ToString::to_string).collect();
+    assert_eq!(free, ["link2.mass_kg", "viscous@2.coefficient_nm_s_rad"]);
+    assert_eq!(model.free[0].bounds(&model), (1.0, 2.0));
+    let read = |text: &str| ParameterPath::read(text, &model);
+    assert_eq!(read("link.boom.mass_kg").unwrap(), model.free[0]);
+    assert_eq!(read("link2.mass_kg").unwrap(), model.free[0]);
+    for (text, told) in [
+        ("link.bom.mass_kg", "no link `bom`; did you mean `boom`"),
+        ("joint.lift.gain_per_rad", "no joint `lift`"),
+        (
+            "viscous@lufff.coefficient_nm_s_rad",
+            "no joint `lufff`; did you mean `luff`",
+        ),
+    ] {
+        let error = read(text).unwrap_err();
+        let found = format!("{error}; {}", error.remedy().unwrap_or_default());
+        assert!(found.contains(told), "{found}");
+    }
+    // What a fit finds is written where the names stand, and bounds are not doubled.
+    let values = [(model.free[0], 1.25), (model.free[1], 0.75)];
+    let fitted = crate::model::edit::set_values(&text, &file, &values).unwrap();
+    assert!(fitted.contains("mass_kg = 1.25"), "{fitted}");
+    assert!(
+        fitted.contains("joint = \"luff\"\ncoefficient_nm_s_rad = 0.75"),
+        "{fitted}"
+    );
+    let bounds = [(model.free[0], Some((0.5, 3.0)))];
+    let bounded = crate::model::edit::set_bounds(&text, &file, &bounds).unwrap();
+    let again = Model::parse(&bounded, &file).unwrap();
+    assert_eq!(again.bounds, [(model.free[0], (0.5, 3.0))]);
+    let twice = text + "\"link2.mass_kg\" = [1.0, 3.0]\n";
+    assert!(refused(&twice, &file).contains("link2.mass_kg"));
+}
+
+/// An import of the crane with other moments of the boom.
+fn imported(moments: &str) -> crate::error::Result<crate::model::import::Imported> {
+    let boom = "ixx=\"0.001\" iyy=\"0.03\" izz=\"0.03\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
+    let text = URDF.replace(boom, moments);
+    assert_ne!(text, URDF);
+    let space = Some(crate::model::import::SpacePlan::default());
+    let plan = crate::model::import::ImportPlan {
+        space,
+        ..Default::default()
+    };
+    crate::model::import::import(&text, Path::new("crane.urdf"), &plan)
+}
+
+#[test]
+fn moments_that_no_body_has_are_told_with_the_link_and_the_remedy() {
+    for (moments, told) in [
+        ("ixx=\"0.1\" iyy=\"0.03\" izz=\"0.03\"", "triangle"),
+        (
+            "ixx=\"0.03\" iyy=\"0.03\" izz=\"0.03\" ixz=\"0.04\"",
+            "not all above 0",
+        ),
+    ] {
+        let found = imported(moments).unwrap();
+        let note = found.notes[0].to_string();
+        assert!(note.starts_with("inertia of boom, line 5: "), "{note}");
+        assert!(note.contains(told) && note.contains("in the CAD"), "{note}");
+        assert!(
+            found.toml.contains("# Note: inertia of boom"),
+            "{}",
+            found.toml
+        );
+        assert!(found.left_out.iter().all(|part| part.part != "inertia"));
+    }
+    assert!(
+        imported("ixx=\"0.03\" iyy=\"0.03\" izz=\"0.04\"")
+            .unwrap()
+            .notes
+            .is_empty()
+    );
+}
+
+/// The boom turns about y: 0.03 there, and less than nothing about an axis between x and z.
+#[test]
+fn a_moment_below_0_about_its_own_axis_is_refused_in_the_robots_file() {
+    let tilted = URDF.replace("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"1 0 -1\"/>");
+    let boom = "ixx=\"0.001\" iyy=\"0.03\" izz=\"0.03\" ixy=\"0\" ixz=\"0\"";
+    let tilted = tilted.replace(boom, "ixx=\"0.01\" iyy=\"0.03\" izz=\"0.01\" ixz=\"0.04\"");
+    let locked = [("grip".to_string(), 0.0)];
+    let path = Path::new("crane.urdf");
+    let error = crate::model::import::robot_in_space(&tilted, path, &locked);
+    let error = error.err().unwrap();
+    let found = format!("{error}; {}", error.remedy().unwrap_or_default());
+    for told in [
+        "crane.urdf:5",
+        "the link boom",
+        "-3.000e-2 kg m^2",
+        "axis of luff",
+        "products",
+    ] {
+        assert!(found.contains(told), "{told}: {found}");
+    }
+}

@@ -40,13 +40,21 @@ pub const STEP_S: Limits = Limits::within(1e-5, 0.1);
 /// # Errors
 /// The first thing that is unknown, missing or impossible.
 pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
+    model_of(text, file, None)
+}
+
+/// Reads a model whose robot is this text, not what is in the robot's file.
+///
+/// # Errors
+/// As [`model`].
+pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<Model> {
     let source = TomlSource { text, file };
     let document = source.document()?;
     let root = Table::root(&source, &document);
     root.only(&["rig", "link", "joint", "expression", "effect", "fit", "log"])?;
 
     let rig = root.required_table("rig")?;
-    let robot = Robot::read(&rig, file)?;
+    let robot = Robot::read(&rig, file, robot)?;
     let of_shape: &[&str] = match robot {
         None => &["angle_zero", "angles"],
         Some(_) => &["robot", "robot_sha256", "locked"],

@@ -133,6 +133,7 @@ fn take(
     joint: &mut TreeJoint,
 ) -> Result<()> {
     let (tag, line) = (own.element.tag(), own.element.line());
+    joint.actuator_at = Some(own.element.at());
     let Some(mut affine) = affine(own)? else {
         joint.leave(tag, line, "no drive here is like it; the joint is passive");
         return Ok(());

@@ -13,12 +13,12 @@ const DEEPEST: usize = 50;
 type AttributeValues<'a> = BTreeMap<&'a str, &'a str>;
 
 /// Every class: per tag, its attributes with those of the classes around it.
-pub(super) struct Defaults<'a> {
+pub(in crate::model) struct Defaults<'a> {
     classes: HashMap<&'a str, HashMap<&'a str, AttributeValues<'a>>>,
 }
 
 /// An element's attributes, its own before those of its class.
-pub(super) struct Attributes<'a> {
+pub(in crate::model) struct Attributes<'a> {
     pub element: Element<'a>,
     from_class: AttributeValues<'a>,
 }

@@ -48,7 +48,10 @@ impl Reader<'_> {
             format!("joint_of_{}", self.bodies[body].name),
             str::to_string,
         );
-        let made = |motion| TreeJoint::new(name.clone(), element.line(), motion, Vector3::z());
+        let made = |motion| TreeJoint {
+            at: element.at(),
+            ..TreeJoint::new(name.clone(), element.line(), motion, Vector3::z())
+        };
         if element.tag() == "freejoint" {
             return Ok(made(JointMotion::Free));
         }

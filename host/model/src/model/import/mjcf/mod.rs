@@ -1,12 +1,12 @@
 //! MJCF: bodies within bodies, attributes filled from classes of defaults.
 
 mod actuators;
-mod defaults;
+pub(in crate::model) mod defaults;
 mod geometry;
 mod inertials;
 mod joints;
 mod option;
-mod orientation;
+pub(in crate::model) mod orientation;
 
 use super::tree::{Fault, FaultyPart, Inertial, Remark, RobotTree, TreeBody};
 use super::xml::Element;
@@ -82,6 +82,7 @@ pub(super) fn tree(root: Element) -> Result<RobotTree> {
     let world = TreeBody {
         name: "world".to_string(),
         line: root.line(),
+        at: root.at(),
         parent: None,
         pose: Isometry3::identity(),
         inertial: Inertial::NONE,
@@ -187,6 +188,7 @@ impl Reader<'_> {
         self.bodies.push(TreeBody {
             name: name.clone(),
             line: body.line(),
+            at: body.at(),
             parent: Some(parent),
             pose: frame * pose,
             inertial: Inertial::NONE,

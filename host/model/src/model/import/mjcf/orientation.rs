@@ -6,8 +6,8 @@ use crate::model::import::xml::Element;
 use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 
 /// Settings of `<compiler>`.
-pub(super) struct Compiler {
-    degrees: bool,
+pub(in crate::model) struct Compiler {
+    pub degrees: bool,
     /// Axes of Euler angles, small letters where they turn along.
     euler: [char; 3],
     /// Whether a range limits without `limited`.

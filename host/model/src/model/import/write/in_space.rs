@@ -43,9 +43,13 @@ pub(in crate::model::import) fn toml_in_space(
          # your logs.\n",
         format.to_uppercase()
     );
-    for part in &found.left_out {
-        let line = format!("Not carried: {part}").replace(char::is_control, " ");
-        let _ = writeln!(text, "# {line}");
+    let notes = found.notes.iter().map(|note| format!("Note: {note}"));
+    let left_out = found
+        .left_out
+        .iter()
+        .map(|part| format!("Not carried: {part}"));
+    for line in notes.chain(left_out) {
+        let _ = writeln!(text, "# {}", line.replace(char::is_control, " "));
     }
     write_rig(&mut text, name, named, short_step_s(&found.tree, &links));
     write_bodies(&mut text, found, &links);
