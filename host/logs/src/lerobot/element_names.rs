@@ -20,8 +20,8 @@ pub struct ElementNames {
 impl ElementNames {
     /// The names of a feature; none where it gives none.
     ///
-    /// LeRobot writes a list of names, or an object of one such list (`{"motors": [..]}`), or of the
-    /// place of each name (`{"x": 0, "y": 1}`).
+    /// LeRobot writes a list of names, or an object of one such list (`{"motors": [..]}`), or of
+    /// the place of each name (`{"x": 0, "y": 1}`).
     ///
     /// # Errors
     /// A shape that is no list's, and names that are none of these.

@@ -84,15 +84,16 @@ impl DatasetInfo {
     /// # Errors
     /// No text, or one that leads out of the folder or names no files.
     pub fn data_path(&self) -> Result<DataPath> {
-        let (names, usual) = match self.is_v3 {
-            true => (
+        let (names, usual) = if self.is_v3 {
+            (
                 ["chunk_index", "file_index"],
                 "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
-            ),
-            false => (
+            )
+        } else {
+            (
                 ["episode_chunk", "episode_index"],
                 "data/chunk-{episode_chunk:03d}/episode_{episode_index:06d}.parquet",
-            ),
+            )
         };
         let remedy = format!("write a path within the folder, usually {usual}");
         let text = self.value.get("data_path").and_then(Value::as_str);

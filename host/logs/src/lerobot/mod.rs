@@ -65,9 +65,10 @@ impl LerobotDataset {
     /// # Errors
     /// More than 10,000 of them, one that is not there, and a path that leads out of the folder.
     pub fn files(&self) -> Result<Vec<PathBuf>> {
-        let chunks = match self.info.is_v3 {
-            false => self.episode_files()?,
-            true => self.listed_files()?,
+        let chunks = if self.info.is_v3 {
+            self.listed_files()?
+        } else {
+            self.episode_files()?
         };
         let path = self.info.data_path()?;
         let mut files = Vec::with_capacity(chunks.len());

@@ -33,8 +33,8 @@ impl DatasetFacts {
 /// All rows of a data set, its episodes one after the other.
 ///
 /// # Errors
-/// As [`LerobotDataset::open`] and [`LerobotDataset::files`]; rows asked for; files of other columns
-/// than the first; lists that are not as long as `meta/info.json` says; more than 200 million
+/// As [`LerobotDataset::open`] and [`LerobotDataset::files`]; rows asked for; files of other
+/// columns than the first; lists that are not as long as `meta/info.json` says; more than 200 million
 /// numbers.
 pub(crate) fn raw_log(folder: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
     if let Some(request) = checked.filter(|request| request.rows.is_some()) {
@@ -89,6 +89,10 @@ fn facts(dataset: &LerobotDataset, columns: &[String]) -> Result<DatasetFacts> {
         let mut own = columns
             .iter()
             .filter(|column| element_of(column, list).is_some());
+        // What no file holds need not be described as a list.
+        if list != super::STATE && own.clone().next().is_none() {
+            continue;
+        }
         let Some(names) = dataset.names(list)? else {
             if list == super::STATE {
                 facts.unnamed = Some(format!("features[{list:?}] gives no names"));

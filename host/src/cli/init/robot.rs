@@ -3,12 +3,12 @@
 use super::InitArgs;
 use crate::cli::import::{locked, seen_from};
 use crate::cli::{Console, ExitStatus, input};
+use handstand::Result;
 use handstand::log::RawLog;
 use handstand::log::init::{LerobotUnit, RobotLog, robot_log};
 use handstand::log::lerobot::Calibration;
 use handstand::model::Model;
 use handstand::model::import::{Locked, SpacePlan, import_for_log, moving_joints};
-use handstand::Result;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

@@ -26,9 +26,40 @@ impl LogJoint {
         [&self.name, &self.shown, &self.column].contains(&&name.to_string())
     }
 
-    fn is_plainly(&self, joint: &str) -> bool {
+    /// How closely its name is that of a joint.
+    fn likeness(&self, joint: &str) -> Option<Likeness> {
         let is_left_over = self.is_left_over && !self.name.is_empty();
-        plain(&self.name) == plain(joint) || (is_left_over && name_guess(joint).joint == self.name)
+        if self.name == joint || self.shown == joint {
+            Some(Likeness::Equal)
+        } else if plain(&self.name) == plain(joint)
+            || (is_left_over && name_guess(joint).joint == self.name)
+        {
+            Some(Likeness::Plain)
+        } else if extends(&self.name, joint) || extends(joint, &self.name) {
+            Some(Likeness::Words)
+        } else {
+            None
+        }
+    }
+}
+
+/// How closely two names are one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Likeness {
+    /// To the letter.
+    Equal,
+    /// But for signs and capitals.
+    Plain,
+    /// But for words before or behind.
+    Words,
+}
+
+impl Likeness {
+    fn matched_by(self) -> MatchedBy {
+        match self {
+            Likeness::Equal | Likeness::Plain => MatchedBy::Name,
+            Likeness::Words => MatchedBy::Words,
+        }
     }
 }
 
@@ -117,21 +148,15 @@ fn of_joint(
     mapped: &[(String, String)],
 ) -> Result<Option<(usize, MatchedBy)>> {
     let is_free = |own: &LogJoint| !mapped.iter().any(|(_, name)| own.is_called(name));
-    let by: [(MatchedBy, &dyn Fn(&LogJoint) -> bool); 3] = [
-        (MatchedBy::Name, &|own| {
-            own.name == joint || own.shown == joint
-        }),
-        (MatchedBy::Name, &|own| own.is_plainly(joint)),
-        (MatchedBy::Words, &|own| {
-            extends(&own.name, joint) || extends(joint, &own.name)
-        }),
-    ];
-    for (by, is) in by {
-        let found = (0..log.len()).filter(|index| is_free(&log[*index]) && is(&log[*index]));
-        let found: Vec<usize> = found.collect();
+    let likeness = |own: &LogJoint| own.likeness(joint);
+    for by in [Likeness::Equal, Likeness::Plain, Likeness::Words] {
+        let found = (0..log.len()).filter(|index| is_free(&log[*index]));
+        let found: Vec<usize> = found
+            .filter(|index| likeness(&log[*index]) == Some(by))
+            .collect();
         match found[..] {
             [] => {}
-            [index] => return Ok(Some((index, by))),
+            [index] => return Ok(Some((index, by.matched_by()))),
             _ => {
                 let names = quoted(found.iter().map(|index| log[*index].shown.as_str()));
                 let first = &log[found[0]].shown;

@@ -16,7 +16,7 @@ use crate::error::{Error, Place, Result};
 use crate::lerobot::{COUNT_RAD, Calibration, MotorCalibration};
 use crate::model::import::{JointPlan, LogPlan, MovingJoint, ServoFigures};
 use matching::{LogJoint, MatchedBy, matched, quoted};
-use units::{AngleUnits, is_guessed, is_lerobot};
+use units::{AngleUnits, Pair, is_lerobot};
 
 /// Rotor times the square of the gear's ratio of a servo of which nothing is known, kg m^2: about
 /// an STS3215.
@@ -66,20 +66,17 @@ pub fn robot_log(log: &RawLog, file: &str, ask: &RobotLog) -> Result<(LogPlan, V
     let names: Vec<&str> = ask.joints.iter().map(|joint| joint.name.as_str()).collect();
     let found = matched(&names, &own, ask.mapped, file).map_err(|error| unnamed(log, error))?;
     let pairs = ask.joints.iter().zip(&found);
-    let pairs: Vec<(&MovingJoint, &JointGuess, &LogJoint)> = pairs
+    let pairs: Vec<Pair> = pairs
         .map(|(joint, (index, _))| (joint, &guess.joints[*index], &own[*index]))
         .collect();
     say_matched(&pairs, &found, &own, &mut said);
-    let units = match is_lerobot {
-        true => {
-            let decided = said.len();
-            let units = AngleUnits::of(log, file, ask, &pairs, &mut said)?;
-            if said.len() > decided {
-                said.retain(|guess| !is_guessed(guess) && guess.why != "the angle's unit");
-            }
-            Some(units)
-        }
-        false => None,
+    let units = if is_lerobot {
+        // Said of each, and now of all.
+        let (angle, input) = ("angle of joint ", "input of joint ");
+        said.retain(|guess| !guess.what.starts_with(angle) && !guess.what.starts_with(input));
+        Some(AngleUnits::of(log, file, ask, &pairs, &mut said)?)
+    } else {
+        None
     };
     let mut joints = Vec::with_capacity(pairs.len());
     for (index, pair) in pairs.iter().enumerate() {
@@ -147,7 +144,7 @@ fn unnamed(log: &RawLog, error: Error) -> Error {
 }
 
 fn say_matched(
-    pairs: &[(&MovingJoint, &JointGuess, &LogJoint)],
+    pairs: &[Pair],
     found: &[(usize, MatchedBy)],
     own: &[LogJoint],
     said: &mut Vec<Guess>,
@@ -170,7 +167,7 @@ fn say_matched(
 }
 
 /// Says which drives are guesses: those that the robot's file does not have.
-fn say_drives(pairs: &[(&MovingJoint, &JointGuess, &LogJoint)], said: &mut Vec<Guess>) {
+fn say_drives(pairs: &[Pair], said: &mut Vec<Guess>) {
     let other = pairs
         .iter()
         .filter(|(joint, own, _)| joint.drive != own.drive);

@@ -3,7 +3,6 @@
 use super::matching::{LogJoint, matched};
 use super::{RobotLog, columns_of};
 use crate::error::{Error, Place, Result};
-use crate::init::dataset::LEROBOT_UNIT;
 use crate::init::log_guess::{ColumnGuess, JointGuess};
 use crate::init::values::range;
 use crate::init::{Guess, LogGuess};
@@ -27,13 +26,31 @@ pub enum LerobotUnit {
     Percent,
 }
 
+impl LerobotUnit {
+    fn words(self) -> &'static str {
+        match self {
+            LerobotUnit::Rad => "in rad",
+            LerobotUnit::Deg => "in deg, a gripper's in per cent of its calibrated range",
+            LerobotUnit::Percent => "in per cent of each joint's calibrated range",
+        }
+    }
+}
+
+/// A joint of the robot, and that of the log.
+pub(super) type Pair<'a> = (&'a MovingJoint, &'a JointGuess, &'a LogJoint);
+
+/// Why a unit was guessed.
+const GUESSED: &str = "a guess from their range; else say --unit, of per cent --calibration, too";
+/// Why zero is where it is.
+const ZERO: &str = "LeRobot takes the middle of a calibrated range for the file's 0, the least of \
+                    a gripper's for its lower end";
+
 /// Units of the joints of one data set.
 pub(super) struct AngleUnits<'a> {
     pub log: &'a RawLog,
     pub file: &'a str,
     pub ask: &'a RobotLog<'a>,
-    /// The unit that all angles have, where it is not the one guessed of each.
-    unit: Option<LerobotUnit>,
+    unit: LerobotUnit,
     /// For each joint, its servo.
     motors: Vec<Option<MotorCalibration>>,
     is_dynamixel: bool,
@@ -48,7 +65,7 @@ impl<'a> AngleUnits<'a> {
         log: &'a RawLog,
         file: &'a str,
         ask: &'a RobotLog<'a>,
-        pairs: &[(&MovingJoint, &JointGuess, &LogJoint)],
+        pairs: &[Pair<'_>],
         said: &mut Vec<Guess>,
     ) -> Result<AngleUnits<'a>> {
         let robot_type = log
@@ -61,7 +78,7 @@ impl<'a> AngleUnits<'a> {
             log,
             file,
             ask,
-            unit: ask.unit,
+            unit: LerobotUnit::Rad,
             motors: vec![None; pairs.len()],
             is_dynamixel,
         };
@@ -79,67 +96,68 @@ impl<'a> AngleUnits<'a> {
         Ok(units)
     }
 
-    /// The unit of all angles; none where each has the one guessed from its range.
-    fn decided(
-        &self,
-        pairs: &[(&MovingJoint, &JointGuess, &LogJoint)],
-        said: &mut Vec<Guess>,
-    ) -> Result<Option<LerobotUnit>> {
-        let mut say = |unit: &str, why: &str| said.push(Guess::new("angles", unit, why));
-        match (self.unit, self.ask.calibration) {
-            (Some(LerobotUnit::Percent), None) => Err(Error::usage(
-                "--unit percent: nothing tells the range of each joint",
-                "give the robot's calibration: --calibration FILE.json",
-            )),
-            (Some(LerobotUnit::Rad), _) => {
-                say("in rad", "as you say");
-                Ok(self.unit)
+    /// The unit of all angles, said.
+    fn decided(&self, pairs: &[Pair], said: &mut Vec<Guess>) -> Result<LerobotUnit> {
+        let (unit, why) = match (self.ask.unit, self.ask.calibration) {
+            (Some(LerobotUnit::Percent), None) => {
+                return Err(Error::usage(
+                    "--unit percent: nothing tells the range of each joint",
+                    "give the robot's calibration: --calibration FILE.json",
+                ));
             }
-            (Some(LerobotUnit::Deg), _) => {
-                say("in deg", "as you say");
-                Ok(self.unit)
+            (Some(unit), _) => (unit, "as you say"),
+            (None, None) => (self.guessed(pairs), GUESSED),
+            (None, Some(_)) if pairs.iter().any(|pair| self.is_beyond(pair)) => {
+                let why = "some lie beyond 100, so they are no per cent";
+                (LerobotUnit::Deg, why)
             }
-            (Some(LerobotUnit::Percent), _) => {
-                say("in per cent of each joint's calibrated range", "as you say");
-                Ok(self.unit)
-            }
-            (None, None) => Ok(None),
             (None, Some(_)) => {
-                let is_beyond = |(_, joint, own): &(&MovingJoint, &JointGuess, &LogJoint)| {
-                    let position = joint.position.as_ref().filter(|_| !is_gripper(&own.name));
-                    let values = position.and_then(|own| range(&self.log.columns[own.index]));
-                    values.is_some_and(|(low, high)| low.min(-high) < -100.0 - ROUNDED)
-                };
-                if pairs.iter().any(is_beyond) {
-                    say("in deg", "some lie beyond 100, so they are no per cent");
-                    return Ok(Some(LerobotUnit::Deg));
-                }
-                Err(Error::usage(
+                return Err(Error::usage(
                     format!(
                         "{}: degrees or per cent, which nothing in it tells",
                         self.file
                     ),
                     "say --unit deg (LeRobot's use_degrees) or --unit percent",
-                ))
+                ));
             }
+        };
+        said.push(Guess::new("angles", unit.words(), why));
+        if unit != LerobotUnit::Rad {
+            said.push(Guess::new("angle zero", "that of the robot's file", ZERO));
         }
+        Ok(unit)
+    }
+
+    /// Degrees where an angle goes farther than one in rad.
+    fn guessed(&self, pairs: &[Pair]) -> LerobotUnit {
+        let is_deg = |(_, joint, _): &Pair| {
+            let position = joint.position.as_ref();
+            position.is_some_and(|own| own.unit == "deg")
+        };
+        if pairs.iter().any(is_deg) {
+            LerobotUnit::Deg
+        } else {
+            LerobotUnit::Rad
+        }
+    }
+
+    /// Whether an angle lies where no per cent do.
+    fn is_beyond(&self, (_, joint, own): &Pair) -> bool {
+        let position = joint.position.as_ref().filter(|_| !is_gripper(&own.name));
+        let values = position.and_then(|own| range(&self.log.columns[own.index]));
+        values.is_some_and(|(low, high)| low.min(-high) < -100.0 - ROUNDED)
     }
 
     /// The lines of a joint's `[[log.joint]]`.
     ///
     /// # Errors
     /// Values that the unit does not have; a gripper in per cent whose range nothing tells.
-    pub fn columns(
-        &self,
-        index: usize,
-        (joint, own, name): (&MovingJoint, &JointGuess, &LogJoint),
-    ) -> Result<String> {
+    pub fn columns(&self, index: usize, (joint, own, name): Pair) -> Result<String> {
         let Some(position) = &own.position else {
             return Ok(columns_of(None, own, joint));
         };
-        let is_deg =
-            self.unit == Some(LerobotUnit::Deg) || (self.unit.is_none() && position.unit == "deg");
-        let is_percent = self.unit == Some(LerobotUnit::Percent);
+        let is_deg = self.unit == LerobotUnit::Deg;
+        let is_percent = self.unit == LerobotUnit::Percent;
         let motor = self.motors[index];
         let scaled = match (is_gripper(&name.name), motor) {
             (true, None) if is_deg => return Err(self.gripper_range(joint, name)),
@@ -166,9 +184,10 @@ impl<'a> AngleUnits<'a> {
             );
             return Err(Error::usage(what, self.hold(joint)));
         }
+        // A speed's unit was guessed by the angle's: of another one it says nothing.
+        let is_same = scaled.unit.0 == position.unit;
         let mut own = own.clone();
-        // Speeds are judged by angles: in another unit than theirs they say nothing.
-        own.velocity.take_if(|_| self.unit.is_some());
+        own.velocity.take_if(|_| !is_same);
         for column in [&mut own.position]
             .into_iter()
             .chain([&mut own.input])
@@ -179,7 +198,11 @@ impl<'a> AngleUnits<'a> {
                 scaled.put(column);
             }
         }
-        Ok(columns_of(motor, &own, joint))
+        Ok(columns_of(
+            motor.filter(|_| scaled.unit.0 == "ticks"),
+            &own,
+            joint,
+        ))
     }
 
     fn is_reversed(&self, motor: MotorCalibration) -> bool {
@@ -275,11 +298,6 @@ fn of_motor(name: &str) -> LogJoint {
         column: name.to_string(),
         is_left_over: false,
     }
-}
-
-/// What is said of the unit where neither an option nor a calibration tells it.
-pub(super) fn is_guessed(guess: &Guess) -> bool {
-    guess.why == LEROBOT_UNIT || guess.why == "likewise"
 }
 
 /// Whether the log's columns are a data set's.

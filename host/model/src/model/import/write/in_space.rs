@@ -123,7 +123,7 @@ fn write_rig(
     }
     if is_guessed {
         text.push_str(
-            "guessed = true # until its drives are measured: a log's units are not judged by them\n",
+            "guessed = true # until its drives are measured: they do not judge a log's units\n",
         );
     }
     if let Some(step_s) = step_s {
