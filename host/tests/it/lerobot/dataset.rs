@@ -245,9 +245,10 @@ impl Dataset {
             "chunks_size": 1000,
             "fps": FPS,
             "splits": {"train": format!("0:{}", self.episodes.len())},
-            "data_path": match is_v3 {
-                true => "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
-                false => "data/chunk-{episode_chunk:03d}/episode_{episode_index:06d}.parquet",
+            "data_path": if is_v3 {
+                "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
+            } else {
+                "data/chunk-{episode_chunk:03d}/episode_{episode_index:06d}.parquet"
             },
             "video_path": null,
             "features": {

@@ -260,6 +260,9 @@ fn names_must_be_names_of_the_elements() {
     done(bench.run(INIT));
 }
 
+/// How a good calibration is spoiled.
+type Change<'a> = &'a dyn Fn(&mut Value);
+
 #[test]
 fn a_calibration_must_be_the_robots() {
     let bench = bench("v3.0", names(), Written::Percent);
@@ -274,7 +277,7 @@ fn a_calibration_must_be_the_robots() {
     let pan = |key: &'static str, value: Value| {
         move |own: &mut Value| own["shoulder_pan"][key] = value.clone()
     };
-    let cases: [(&dyn Fn(&mut Value), &str); 7] = [
+    let cases: [(Change, &str); 7] = [
         (&|own| *own = json!([]), "not an object of servos"),
         (&|own| *own = json!({}), "not an object of servos"),
         (
