@@ -6,6 +6,7 @@ mod hostile;
 use crate::common::{Bench, Ran};
 use dataset::{Dataset, EPISODES, JOINTS, ROBOT, Written, calibration, simulated};
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// Errors of a model that is right, mrad: those of start speeds taken from rows at 30 Hz, and of a
 /// servo's counts of 1.5 mrad.
@@ -304,6 +305,27 @@ fn other_logs_of_a_robot_are_matched_by_their_columns() {
     done(bench.run("init states.csv --robot robot.urdf --drive passive -o free.toml"));
     let ran = bench.run("init states.csv --robot robot.urdf --drive position");
     assert_eq!(ran.code, Some(2), "{ran:?}");
+}
+
+/// Joint states of ROS say what their columns are.
+#[test]
+fn joint_states_of_ros_are_matched_by_their_names() {
+    let bench = Bench::new();
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fuzz/corpus");
+    for (log, named) in [
+        ("log_mcap/states_lz4.mcap", "a.mcap"),
+        ("log_rosbag/states.db3", "a.db3"),
+    ] {
+        bench.put(named, std::fs::read(corpus.join(log)).unwrap());
+        let robot = std::fs::read_to_string(corpus.join("import/two.urdf")).unwrap();
+        let robot = robot.replace("name=\"s\"", "name=\"shoulder\"");
+        bench.put("two.urdf", robot.replace("name=\"e\"", "name=\"elbow\""));
+        let model = done(bench.run(&format!("init {named} --robot two.urdf"))).stdout;
+        for joint in ["shoulder", "elbow"] {
+            let column = format!("position = {{ column = \"{joint}.position\", unit = \"rad\" }}");
+            assert!(model.contains(&column), "{named}: {model}");
+        }
+    }
 }
 
 /// The arm that most data sets are of, from its owner's file.
