@@ -34,8 +34,8 @@ impl DatasetFacts {
 ///
 /// # Errors
 /// As [`LerobotDataset::open`] and [`LerobotDataset::files`]; rows asked for; files of other
-/// columns than the first; lists that are not as long as `meta/info.json` says; more than 200 million
-/// numbers.
+/// columns than the first; lists that are not as long as `meta/info.json` says; more than 200
+/// million numbers.
 pub(crate) fn raw_log(folder: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
     if let Some(request) = checked.filter(|request| request.rows.is_some()) {
         return Err(rows_of_dataset(request));
