@@ -1,7 +1,8 @@
-//! A folder of logs stands for the logs in it.
+//! A folder of logs stands for the logs in it, one of LeRobot's data sets for its episodes.
 
 use super::foreign::foreign_file;
 use super::format::LogFormat;
+use super::lerobot::LerobotDataset;
 use super::request::LogRequest;
 use super::same_rows::{SameBy, SizedRequest};
 use crate::error::{Error, Result};
@@ -18,12 +19,14 @@ pub fn expanded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
     Ok(all)
 }
 
-/// The requests with each folder replaced by the logs in it, in the order of their names.
+/// The requests with each folder replaced by the logs in it, in the order of their names; a data
+/// set of LeRobot by its files, in the order of their episodes.
 ///
 /// A folder's own folders are not searched; files of other endings are passed over.
 ///
 /// # Errors
-/// A folder without a log, rows of a folder, and what the system refuses.
+/// A folder without a log, rows of a folder, what the system refuses, and a data set whose
+/// description or files are not as LeRobot writes them.
 pub fn unfolded(requests: &[LogRequest]) -> Result<Vec<LogRequest>> {
     let mut all = Vec::new();
     for request in requests {
@@ -60,6 +63,9 @@ fn told_apart(requests: &[LogRequest]) -> Result<()> {
 
 fn of_folder(request: &LogRequest) -> Result<Vec<LogRequest>> {
     let folder = &request.path;
+    if LerobotDataset::is_one(folder) {
+        return of_dataset(request);
+    }
     let refused = |error| Error::file(folder, "read", error);
     let (mut logs, mut others): (Vec<PathBuf>, Vec<PathBuf>) = Default::default();
     for entry in std::fs::read_dir(folder).map_err(refused)? {
@@ -94,6 +100,20 @@ fn of_folder(request: &LogRequest) -> Result<Vec<LogRequest>> {
         endings.join(", ")
     );
     Err(Error::usage(message, remedy))
+}
+
+fn of_dataset(request: &LogRequest) -> Result<Vec<LogRequest>> {
+    if request.rows.is_some() {
+        return Err(rows_of_dataset(request));
+    }
+    let files = LerobotDataset::open(&request.path)?.files()?;
+    Ok(files.into_iter().map(LogRequest::whole).collect())
+}
+
+/// Rows are of a file.
+pub(super) fn rows_of_dataset(request: &LogRequest) -> Error {
+    let remedy = "name one of its files: data/chunk-000/file-000.parquet:0-999";
+    Error::usage(format!("{request}: rows of a data set"), remedy)
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod header;
 pub mod init;
 mod iso;
 mod layout;
+pub mod lerobot;
 mod lines;
 mod log_set;
 #[cfg(feature = "ros")]
@@ -45,6 +46,7 @@ pub use check::{LogFinding, Proof, Severity, check};
 pub use folder::{expanded, unfolded};
 pub use format::LogFormat;
 pub use init::time_si;
+pub use lerobot::DatasetFacts;
 pub use log_set::LogSet;
 pub use merge::{Alignment, MergePlan, MergedLog, merge};
 pub use raw::RawLog;

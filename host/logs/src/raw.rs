@@ -5,6 +5,7 @@ use super::cell::{is_missing, number};
 use super::format::LogFormat;
 use super::header::{LogHeader, comment, fields, surplus};
 use super::iso::iso_ns;
+use super::lerobot::{DatasetFacts, LerobotDataset, raw_log};
 use super::lines::Lines;
 use super::reading_limit::ReadingLimit;
 use super::request::LogRequest;
@@ -35,10 +36,13 @@ pub struct RawLog {
     pub is_si: bool,
     /// The bench that recorded it, where the file says.
     pub bench: Option<BenchFigures>,
+    /// What a data set of LeRobot says of its columns.
+    pub dataset: Option<DatasetFacts>,
 }
 
 impl RawLog {
-    /// Reads a log of any format as it stands, with numbers that no sensor gives.
+    /// Reads a log of any format as it stands, with numbers that no sensor gives; of a data set of
+    /// LeRobot, all episodes one after the other.
     ///
     /// # Errors
     /// A file without a header, or that is no text.
@@ -47,7 +51,10 @@ impl RawLog {
     }
 
     /// Reads a log of any format; in the rows asked for, readings must be ones that a sensor gives.
-    fn read_checked(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
+    pub(super) fn read_checked(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
+        if LerobotDataset::is_one(path) {
+            return raw_log(path, checked);
+        }
         match LogFormat::of(path) {
             LogFormat::Bam => {
                 let (motion, bench) = bam::read_alone(&LogRequest::whole(path))?;
@@ -66,6 +73,7 @@ impl RawLog {
                     warning: table.warning,
                     is_si: table.is_si,
                     bench: None,
+                    dataset: None,
                 };
                 if let Some(request) = checked {
                     ReadingLimit::new(request, &log.names).hold_table(&log)?;

@@ -55,7 +55,7 @@ pub struct ImportArgs {
 }
 
 /// `NAME=VALUE`.
-fn locked(text: &str) -> std::result::Result<Locked, String> {
+pub(super) fn locked(text: &str) -> std::result::Result<Locked, String> {
     let (name, value) = text
         .split_once('=')
         .ok_or("write NAME=VALUE, as gripper=0.3")?;
@@ -68,7 +68,7 @@ fn locked(text: &str) -> std::result::Result<Locked, String> {
 }
 
 /// The robot's file as a model file beside `output` names it: relative where both are.
-fn seen_from(output: Option<&Path>, robot: &Path) -> String {
+pub(super) fn seen_from(output: Option<&Path>, robot: &Path) -> String {
     let folder = output.and_then(Path::parent).unwrap_or(Path::new(""));
     if robot.is_absolute() || folder == Path::new("") {
         return robot.display().to_string();

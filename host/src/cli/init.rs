@@ -11,9 +11,21 @@
 //! $ handstand fit arm.toml swing.csv -o fitted.toml
 //! ```
 //!
+//! With `--robot` the model is the robot in space of a URDF or MJCF file, and the log's columns are
+//! matched with its joints by their names: of a data set of LeRobot by those in its
+//! `meta/info.json`, of joint states by `NAME.position`.
+//!
+//! ```console
+//! $ handstand init my_dataset --robot so101.urdf --lock gripper=0.3 -o arm.toml
+//! $ handstand compare arm.toml my_dataset
+//! ```
+//!
 //! Without `-o` the file's text goes to stdout. `--json` prints `file` (or null), `text` (null
 //! where a file was written), `guesses` (`what`, `guess`, `why`) and `values` (`path`, `value`,
-//! `low` and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`).
+//! `low` and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`);
+//! with `--robot` also `joints` and `not_carried` (`part`, `name`, `line`, `why`).
+
+mod robot;
 
 use super::{Console, ExitStatus, input};
 use handstand::first_model::estimate;
@@ -56,6 +68,8 @@ pub struct InitArgs {
     /// Mass of each link, kg, from the base outwards
     #[arg(long, value_name = "KG", num_args = 1.., value_parser = input::positive)]
     mass: Vec<f64>,
+    #[command(flatten)]
+    robot: robot::RobotArgs,
 }
 
 /// Guesses, asks, writes.
@@ -64,6 +78,9 @@ pub fn run(args: &InitArgs, console: &Console) -> Result<ExitStatus> {
         vacant(file, args.force)?;
     }
     let log = RawLog::read_request(&args.log)?;
+    if let Some(robot) = &args.robot.robot {
+        return robot::run(args, robot, &log, console);
+    }
     let mut draft = Draft::of(&log, &args.log.name(), args.drive.as_deref())?;
     if let Some(drive) = args
         .drive

@@ -27,6 +27,8 @@ mod gains;
 mod golden;
 mod lab;
 mod laws;
+#[cfg(feature = "parquet")]
+mod lerobot;
 #[cfg(unix)]
 mod mcap;
 mod mixed_motions;

@@ -31,6 +31,7 @@ pub const TARGETS: &[Target] = &[
     target("image", targets::files::image),
     target("import", targets::model::import),
     target("journal", targets::files::journal),
+    target("lerobot", targets::files::lerobot),
     target("log_csv", targets::files::log_csv),
     target("log_json", targets::files::log_json),
     target("log_mat", targets::files::log_mat),

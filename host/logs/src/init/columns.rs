@@ -51,7 +51,7 @@ pub fn log_guess(
     }
     let is_lerobot = is_lerobot(log.names.iter().map(String::as_str));
     if is_lerobot {
-        give_lerobot_roles(log.names.iter().map(String::as_str), &mut names);
+        give_lerobot_roles(log, &mut names);
     }
     give_inputs(&mut names);
     let reader = GuessReader {

@@ -13,10 +13,10 @@ const GRAVITY_M_S2: f64 = 9.81;
 const LENGTH_M: f64 = 0.25;
 const MASS_KG: f64 = 0.3;
 /// A servo of which nothing is known: about a Dynamixel AX-12.
-const GAIN_PER_RAD: f64 = 8.0;
-const GAIN_S_PER_RAD: f64 = 0.5;
-const STALL_TORQUE_NM: f64 = 1.5;
-const NO_LOAD_SPEED_RAD_S: f64 = 6.0;
+pub(super) const GAIN_PER_RAD: f64 = 8.0;
+pub(super) const GAIN_S_PER_RAD: f64 = 0.5;
+pub(super) const STALL_TORQUE_NM: f64 = 1.5;
+pub(super) const NO_LOAD_SPEED_RAD_S: f64 = 6.0;
 
 /// The joints' motion in SI.
 pub(super) struct Evidence {

@@ -12,6 +12,7 @@ mod inputs;
 mod log_guess;
 mod name;
 mod origin;
+mod robot;
 mod segment;
 #[cfg(test)]
 mod tests;
@@ -24,6 +25,7 @@ mod write;
 pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
 pub use name::{Role, name_guess};
 pub use origin::{DraftValue, Estimate, Origin};
+pub use robot::{LerobotUnit, RobotLog, robot_log};
 
 use crate::RawLog;
 use crate::error::{Error, Result};

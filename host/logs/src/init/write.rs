@@ -1,6 +1,6 @@
 //! A guessed model as a file that says what was guessed.
 
-use super::log_guess::{JointGuess, PayloadGuess};
+use super::log_guess::{JointGuess, LogGuess, PayloadGuess};
 use super::{ColumnGuess, Draft};
 use crate::error::Result;
 use crate::model::RateSensor;
@@ -55,11 +55,35 @@ fn friction(draft: &Draft) -> String {
 
 /// The `[log]` of joints that are driven so.
 pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
-    let mut text = String::from("\n[log]\n");
     let columns = &draft.columns;
+    let mut text = String::from("\n[log]\n") + &log_head(columns, draft.split_at_gap_s);
+    for (index, (joint, drive)) in columns.joints.iter().zip(drives).enumerate() {
+        let _ = writeln!(
+            text,
+            "\n[[log.joint]] # {}",
+            joint.name.replace(char::is_control, " ")
+        );
+        let input = joint.input.as_ref().filter(|_| *drive != "passive");
+        let own: [(&str, Option<&ColumnGuess>); 3] = [
+            ("position", joint.position.as_ref()),
+            (speed_key(index, joint), joint.velocity.as_ref()),
+            ("input", input),
+        ];
+        for (key, column) in own {
+            if let Some(column) = column {
+                let _ = writeln!(text, "{key} = {}", column.toml());
+            }
+        }
+    }
+    text.replace("[[log.joint]] # \n", "[[log.joint]]\n")
+}
+
+/// The lines of `[log]` above those of the joints.
+pub(super) fn log_head(columns: &LogGuess, split_at_gap_s: Option<f64>) -> String {
+    let mut text = String::new();
     let quoted = |text: &str| toml_edit::Value::from(text).to_string();
     let _ = writeln!(text, "time = {}", columns.time.toml());
-    if let Some(gap_s) = draft.split_at_gap_s {
+    if let Some(gap_s) = split_at_gap_s {
         let _ = writeln!(text, "split_at_gap_s = {gap_s:?}");
     }
     if let Some(segment) = &columns.segment {
@@ -81,25 +105,7 @@ pub(super) fn log_table(draft: &Draft, drives: &[&str]) -> String {
             "payload = {{ column = \"{key}\", unit = \"kg\", at_m = {at_m:?} }} # of each log"
         );
     }
-    for (index, (joint, drive)) in columns.joints.iter().zip(drives).enumerate() {
-        let _ = writeln!(
-            text,
-            "\n[[log.joint]] # {}",
-            joint.name.replace(char::is_control, " ")
-        );
-        let input = joint.input.as_ref().filter(|_| *drive != "passive");
-        let own: [(&str, Option<&ColumnGuess>); 3] = [
-            ("position", joint.position.as_ref()),
-            (speed_key(index, joint), joint.velocity.as_ref()),
-            ("input", input),
-        ];
-        for (key, column) in own {
-            if let Some(column) = column {
-                let _ = writeln!(text, "{key} = {}", column.toml());
-            }
-        }
-    }
-    text.replace("[[log.joint]] # \n", "[[log.joint]]\n")
+    text
 }
 
 /// What a joint's speed is called: evidence only where its name says that it is no derivative of

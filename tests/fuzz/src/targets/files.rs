@@ -6,7 +6,8 @@ use handstand::link::Settings;
 use handstand::link::boot_loader::Image;
 use handstand::link::record;
 use handstand::log::init::Draft;
-use handstand::log::{LogRequest, RawLog, read};
+use handstand::log::lerobot::Calibration;
+use handstand::log::{LogRequest, RawLog, read, unfolded};
 use handstand::model::{LogColumns, Model};
 use handstand::study::{Study, merge};
 use handstand::synth::StateFeedbackPlan;
@@ -52,6 +53,20 @@ fn raw(name: &str, bytes: &[u8]) {
             assert!(log.columns.iter().all(|column| column.len() == rows));
             let _ = Draft::of(&log, name, None).map(|draft| draft.toml());
         }
+    });
+}
+
+/// What a data set of LeRobot says of itself, and a calibration: both are JSON.
+pub(crate) fn lerobot(bytes: &[u8]) {
+    with_file("calibration.json", bytes, |path| {
+        let _ = Calibration::read(path);
+        let folder = path.with_file_name("dataset");
+        let meta = folder.join("meta");
+        let put = std::fs::create_dir_all(&meta)
+            .and_then(|()| std::fs::write(meta.join("info.json"), bytes));
+        put.expect("a folder of one's own can be written to");
+        let _ = unfolded(&[LogRequest::whole(&folder)]);
+        let _ = RawLog::read(&folder);
     });
 }
 

@@ -7,6 +7,7 @@ mod choice;
 mod frame;
 mod groups;
 mod inertia;
+mod log_plan;
 pub(super) mod mjcf;
 mod planar;
 pub(super) mod prefixes;
@@ -18,6 +19,7 @@ mod urdf;
 mod write;
 pub(super) mod xml;
 
+pub use log_plan::{JointPlan, LogPlan, MovingJoint, ServoFigures, import_for_log, moving_joints};
 pub use space::Locked;
 pub use tree::Remark;
 
@@ -26,7 +28,7 @@ use crate::error::{Error, Result};
 use crate::model::robot::fingerprint;
 use planar::planar_chain;
 use prefixes::declared;
-use space::in_space;
+use space::{InSpace, in_space};
 use std::path::Path;
 use tree::{RobotTree, TreeDrive};
 use write::RobotName;
@@ -83,22 +85,13 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
     let (format, tree) = robot(text, path, plan.driven)?;
     let name = path.display().to_string();
     if let Some(space) = &plan.space {
-        let mut found = in_space(&tree, &space.locked, &name)?;
-        found.left_out.splice(0..0, tree.left_out.iter().cloned());
-        let named = RobotName {
-            file: &space.robot,
-            sha256: &fingerprint(text),
-            locked: &space.locked,
-        };
-        let toml = write::toml_in_space(&tree.name, &mut found, format, &named);
-        let joints = found.joints.into_iter().map(|joint| joint.name);
-        return Ok(Imported {
+        let found = in_space(&tree, &space.locked, &name)?;
+        let parts = ImportedParts {
             format,
-            toml,
-            joints: joints.collect(),
-            left_out: found.left_out,
-            notes: found.notes,
-        });
+            text,
+            tree: &tree,
+        };
+        return Ok(parts.in_space(found, space, None));
     }
     let mut chain = planar_chain(&tree, &plan.joints, &name)?;
     let mut left_out = tree.left_out.clone();
@@ -112,6 +105,44 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
         left_out,
         notes: chain.notes,
     })
+}
+
+/// A robot's file as it was read.
+struct ImportedParts<'a> {
+    format: &'static str,
+    text: &'a str,
+    tree: &'a RobotTree,
+}
+
+impl ImportedParts<'_> {
+    /// The model of the robot in space; with a log's plan and the addresses of what is guessed of
+    /// the drives, its `[log]` and `[fit]` are theirs.
+    fn in_space(
+        &self,
+        mut found: InSpace,
+        space: &SpacePlan,
+        log: Option<(&LogPlan, &[String])>,
+    ) -> Imported {
+        found
+            .left_out
+            .splice(0..0, self.tree.left_out.iter().cloned());
+        let named = RobotName {
+            file: &space.robot,
+            sha256: &fingerprint(self.text),
+            locked: &space.locked,
+        };
+        let name = log.and_then(|(plan, _)| plan.name.as_ref());
+        let name = name.unwrap_or(&self.tree.name);
+        let toml = write::toml_in_space(name, &mut found, self.format, &named, log);
+        let joints = found.joints.into_iter().map(|joint| joint.name);
+        Imported {
+            format: self.format,
+            toml,
+            joints: joints.collect(),
+            left_out: found.left_out,
+            notes: found.notes,
+        }
+    }
 }
 
 /// What a file describes, and its format; joints that nothing drives are given a torque if

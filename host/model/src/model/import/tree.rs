@@ -183,6 +183,19 @@ pub(in crate::model) enum TreeDrive {
     Speed { gain_nm_s: f64, limit_nm: f64 },
 }
 
+impl TreeDrive {
+    /// What a model's file calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            TreeDrive::None => "passive",
+            TreeDrive::Torque(_) => "torque",
+            TreeDrive::Duty { .. } => "duty",
+            TreeDrive::Position { .. } => "position",
+            TreeDrive::Speed { .. } => "speed",
+        }
+    }
+}
+
 /// A joint between a body and its parent.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::model) struct TreeJoint {
@@ -205,6 +218,8 @@ pub(in crate::model) struct TreeJoint {
     pub armature_kg_m2: f64,
     pub stiffness_nm: f64,
     pub spring_rest_rad: f64,
+    /// Between which coordinates its end stops let it move, where the file says both.
+    pub range_rad: Option<(f64, f64)>,
     pub drive: TreeDrive,
     /// Largest torque of all that drives the joint, N m.
     pub most_nm: Option<f64>,
@@ -230,6 +245,7 @@ impl TreeJoint {
             armature_kg_m2: 0.0,
             stiffness_nm: 0.0,
             spring_rest_rad: 0.0,
+            range_rad: None,
             drive: TreeDrive::None,
             most_nm: None,
             limited_by: ("", line),

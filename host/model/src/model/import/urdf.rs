@@ -272,6 +272,11 @@ fn read_joint(joint: Element, kind: &str, made: &mut TreeJoint) -> Result<()> {
         let has = |key: &str| limit.text(key).is_some();
         if ["revolute", "prismatic"].contains(&kind) && (has("lower") || has("upper")) {
             made.leave("range", limit.line(), "links here have no end stops");
+            // Not carried either: a range that cannot be read is as good as none.
+            let end = |key: &str| limit.text(key)?.trim().parse::<f64>().ok();
+            made.range_rad = end("lower")
+                .zip(end("upper"))
+                .filter(|(low, high)| low < high);
         }
         // Not carried, so whatever stands there is no reason to refuse.
         let velocity = limit

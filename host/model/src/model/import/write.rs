@@ -143,20 +143,18 @@ struct DriveFigures {
 }
 
 fn drive_figures(drive: &TreeDrive) -> DriveFigures {
-    let (name, gain, stall, speed) = match *drive {
-        TreeDrive::None => ("passive", None, None, None),
-        TreeDrive::Torque(_) => ("torque", None, None, None),
+    let (gain, stall, speed) = match *drive {
+        TreeDrive::None | TreeDrive::Torque(_) => (None, None, None),
         TreeDrive::Duty {
             stall_nm,
             damping_nm_s,
             ..
-        } => ("duty", None, Some(stall_nm), Some(stall_nm / damping_nm_s)),
+        } => (None, Some(stall_nm), Some(stall_nm / damping_nm_s)),
         TreeDrive::Position {
             stiffness_nm,
             damping_nm_s,
             limit_nm,
         } => (
-            "position",
             Some(stiffness_nm / limit_nm),
             Some(limit_nm),
             (damping_nm_s > 0.0).then(|| limit_nm / damping_nm_s),
@@ -164,12 +162,12 @@ fn drive_figures(drive: &TreeDrive) -> DriveFigures {
         TreeDrive::Speed {
             gain_nm_s,
             limit_nm,
-        } => ("speed", Some(gain_nm_s / limit_nm), Some(limit_nm), None),
+        } => (Some(gain_nm_s / limit_nm), Some(limit_nm), None),
     };
     // Torque that falls to nothing beyond all speeds hardly falls.
     let speed = speed.filter(|speed| *speed <= POSITIVE.1);
     DriveFigures {
-        name,
+        name: drive.name(),
         gain,
         stall,
         speed,

@@ -118,6 +118,9 @@ impl Reader<'_> {
         let limits = |key: &str| self.compiler.limits(own, key);
         if own.text("range").is_some() && limits("limited") && self.options.limits {
             joint.leave("range", line, "links here have no end stops");
+            joint.range_rad = own
+                .text("range")
+                .and_then(|text| self.ends(text, joint.motion));
         }
         let force = own.text("actuatorfrcrange");
         let force = force.filter(|_| limits("actuatorfrclimited"));
@@ -128,6 +131,17 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The ends of a range, rad or m. They are not carried: what cannot be read is as good as none.
+    fn ends(&self, text: &str, motion: JointMotion) -> Option<(f64, f64)> {
+        let mut numbers = text.split_whitespace().map(str::parse::<f64>);
+        let (low, high) = (numbers.next()?.ok()?, numbers.next()?.ok()?);
+        let place = |value: f64| match motion {
+            JointMotion::Slide => value,
+            _ => self.compiler.rad(value),
+        };
+        (low < high).then(|| (place(low), place(high)))
     }
 
     fn not_carried(&self, own: &Attributes, joint: &mut TreeJoint) -> Result<()> {

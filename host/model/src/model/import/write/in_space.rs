@@ -2,6 +2,7 @@
 
 use super::{drive_figures, link_plan, log_table, possible_drive, write_effects};
 use crate::dynamics::{SlideAxis, SpatialEquations, SpatialLink, SpatialTree};
+use crate::model::import::LogPlan;
 use crate::model::import::planar::PlanarLink;
 use crate::model::import::space::{InSpace, Locked};
 use crate::model::import::tree::TreeJoint;
@@ -26,6 +27,7 @@ pub(in crate::model::import) fn toml_in_space(
     found: &mut InSpace,
     format: &str,
     named: &RobotName,
+    log: Option<(&LogPlan, &[String])>,
 ) -> String {
     let mut effects = String::new();
     let mut links: Vec<PlanarLink> = (found.joints.iter())
@@ -37,29 +39,69 @@ pub(in crate::model::import) fn toml_in_space(
         write_effects(&mut effects, index, link, format);
     }
     (found.left_out).extend(links.iter().flat_map(|link| link.joint.left_out.clone()));
-    let mut text = format!(
-        "# A robot in space, whose shape is that of its {} file: joints and links stand here in\n\
-         # the file's order and by its names. Columns are named after the joints: mend them for\n\
-         # your logs.\n",
-        format.to_uppercase()
-    );
+    let mut text = head(format, log);
     let notes = found.notes.iter().map(|note| format!("Note: {note}"));
-    let left_out = found
-        .left_out
-        .iter()
-        .map(|part| format!("Not carried: {part}"));
+    let left_out = (found.left_out.iter()).map(|part| format!("Not carried: {part}"));
     for line in notes.chain(left_out) {
         let _ = writeln!(text, "# {}", line.replace(char::is_control, " "));
     }
-    write_rig(&mut text, name, named, short_step_s(&found.tree, &links));
+    let is_guessed = log.is_some_and(|(_, guessed)| !guessed.is_empty());
+    let step_s = short_step_s(&found.tree, &links);
+    write_rig(&mut text, name, named, step_s, is_guessed);
     write_bodies(&mut text, found, &links);
     text.push_str(&effects);
-    text.push_str(&log_table(&links));
+    match log {
+        None => text.push_str(&log_table(&links)),
+        Some((plan, guessed)) => write_log(&mut text, plan, guessed),
+    }
     text
 }
 
+/// The comments at the head.
+fn head(format: &str, log: Option<(&LogPlan, &[String])>) -> String {
+    let mut text = format!(
+        "# A robot in space, whose shape is that of its {} file: joints and links stand here in\n\
+         # the file's order and by its names.",
+        format.to_uppercase()
+    );
+    let Some((plan, _)) = log else {
+        text += " Columns are named after the joints: mend them for\n# your logs.\n";
+        return text;
+    };
+    text += " Guessed from a log; go through it line by line:\n";
+    for comment in &plan.comments {
+        let _ = writeln!(text, "# - {}", comment.replace(char::is_control, " "));
+    }
+    text
+}
+
+/// Writes `[fit]` and `[log]` of a log.
+fn write_log(text: &mut String, plan: &LogPlan, guessed: &[String]) {
+    if !guessed.is_empty() {
+        let _ = writeln!(
+            text,
+            "\n# Guesses that a fit may change. What the logs do not determine, it says: take that \
+             off.\n[fit]\nfree = ["
+        );
+        for address in guessed {
+            let _ = writeln!(text, "    {},", quoted(address));
+        }
+        text.push_str("]\n");
+    }
+    let _ = write!(text, "\n[log]\n{}", plan.head);
+    for joint in &plan.joints {
+        let _ = write!(text, "\n[[log.joint]]\n{}", joint.columns);
+    }
+}
+
 /// Writes `[rig]`.
-fn write_rig(text: &mut String, name: &str, named: &RobotName, step_s: Option<f64>) {
+fn write_rig(
+    text: &mut String,
+    name: &str,
+    named: &RobotName,
+    step_s: Option<f64>,
+    is_guessed: bool,
+) {
     let name = name.replace(char::is_control, " ");
     let name = if name.trim().is_empty() {
         "robot"
@@ -79,6 +121,11 @@ fn write_rig(text: &mut String, name: &str, named: &RobotName, step_s: Option<f6
             locked.insert(joint, toml_edit::Value::from(*at));
         }
         let _ = writeln!(text, "locked = {locked}");
+    }
+    if is_guessed {
+        text.push_str(
+            "guessed = true # until its drives are measured: they do not judge a log's units\n",
+        );
     }
     if let Some(step_s) = step_s {
         let _ = writeln!(

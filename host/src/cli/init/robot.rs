@@ -1,0 +1,114 @@
+//! `handstand init LOG --robot ROBOT.urdf`: a model of a robot in space whose `[log]` is the log's.
+
+use super::InitArgs;
+use crate::cli::import::{locked, seen_from};
+use crate::cli::{Console, ExitStatus, input};
+use handstand::Result;
+use handstand::log::RawLog;
+use handstand::log::init::{LerobotUnit, RobotLog, robot_log};
+use handstand::log::lerobot::Calibration;
+use handstand::model::Model;
+use handstand::model::import::{Locked, SpacePlan, import_for_log, moving_joints};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// A robot's file beside the log.
+#[derive(Debug, clap::Args)]
+pub struct RobotArgs {
+    /// URDF or MJCF file of the robot: a model in space, its columns by the joints' names
+    #[arg(long, value_name = "ROBOT")]
+    #[arg(conflicts_with_all = ["angle_zero", "angles", "length", "mass"])]
+    pub robot: Option<PathBuf>,
+    /// Joint of the robot that is held, and where, rad or m
+    #[arg(long, num_args = 1.., value_name = "NAME=VALUE", requires = "robot")]
+    #[arg(value_parser = locked)]
+    lock: Vec<Locked>,
+    /// Joint of the robot, and what the log calls it
+    #[arg(long, num_args = 1.., value_name = "JOINT=NAME", requires = "robot")]
+    #[arg(value_parser = mapped)]
+    map: Vec<(String, String)>,
+    /// Calibration of LeRobot's that per cent of a joint's range refer to
+    #[arg(long, value_name = "FILE.json", requires = "robot")]
+    calibration: Option<PathBuf>,
+    /// In what LeRobot wrote angles
+    #[arg(long, value_parser = ["rad", "deg", "percent"], requires = "robot")]
+    unit: Option<String>,
+}
+
+/// `JOINT=NAME`.
+fn mapped(text: &str) -> std::result::Result<(String, String), String> {
+    let pair = text
+        .split_once('=')
+        .filter(|(joint, name)| !joint.is_empty() && !name.is_empty());
+    let (joint, name) = pair.ok_or("write JOINT=NAME, as gripper=main_gripper")?;
+    Ok((joint.to_string(), name.to_string()))
+}
+
+/// Matches, imports, writes.
+pub(super) fn run(
+    args: &InitArgs,
+    robot: &Path,
+    log: &RawLog,
+    console: &Console,
+) -> Result<ExitStatus> {
+    let own = &args.robot;
+    let text = input::text(robot)?;
+    let joints = moving_joints(&text, robot, &own.lock)?;
+    let calibration = own
+        .calibration
+        .as_deref()
+        .map(Calibration::read)
+        .transpose()?;
+    let ask = RobotLog {
+        joints: &joints,
+        mapped: &own.map,
+        calibration: calibration.as_ref(),
+        unit: own.unit.as_deref().map(|unit| match unit {
+            "rad" => LerobotUnit::Rad,
+            "deg" => LerobotUnit::Deg,
+            _ => LerobotUnit::Percent,
+        }),
+        drive: args.drive.as_deref(),
+    };
+    let (mut plan, guesses) = robot_log(log, &args.log.name(), &ask)?;
+    let wanted = args.drive.as_deref().filter(|drive| *drive != "passive");
+    if let Some(drive) = wanted.filter(|drive| plan.joints.iter().all(|own| own.drive != *drive)) {
+        return Err(super::no_input(args, drive, log));
+    }
+    let space = SpacePlan {
+        robot: seen_from(args.output.as_deref(), robot),
+        locked: own.lock.clone(),
+    };
+    plan.name.clone_from(&args.name);
+    let imported = import_for_log(&text, robot, &space, &plan)?;
+    console.say(&format!("joints: {}", imported.joints.join(", ")));
+    for guess in &guesses {
+        console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
+    }
+    for part in &imported.left_out {
+        console.say(&format!("not carried: {part}"));
+    }
+    // Whether figures are possible is known once the robot's file is read by its name.
+    let file = args.output.as_deref().unwrap_or(Path::new("model.toml"));
+    Model::parse(&imported.toml, file)?;
+    if let Some(file) = &args.output {
+        console.write(file, &imported.toml, args.force)?;
+        let (model, log) = (file.display(), &args.log);
+        console.say(&format!("next: handstand compare {model} {log}"));
+    }
+    let written = args.output.is_some();
+    let data = json!({
+        "file": args.output,
+        "text": (!written).then_some(&imported.toml),
+        "guesses": guesses,
+        "values": [],
+        "joints": imported.joints,
+        "not_carried": imported.left_out,
+    });
+    if console.json {
+        console.data(&data)?;
+    } else if !written {
+        console.print(&imported.toml)?;
+    }
+    Ok(ExitStatus::Done)
+}
