@@ -23,7 +23,7 @@
 //! Without `-o` the file's text goes to stdout. `--json` prints `file` (or null), `text` (null
 //! where a file was written), `guesses` (`what`, `guess`, `why`) and `values` (`path`, `value`,
 //! `low` and `high` of an estimate's 95 % interval, `origin`: `given`, `estimated` or `guess`);
-//! with `--robot` also `joints` and `not_carried` (`part`, `name`, `line`, `why`).
+//! with `--robot` also `joints`, and `not_carried` and `notes` (`part`, `name`, `line`, `why`).
 
 mod robot;
 

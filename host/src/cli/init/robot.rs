@@ -85,6 +85,9 @@ pub(super) fn run(
     for guess in &guesses {
         console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
     }
+    for note in &imported.notes {
+        console.say(&format!("note: {note}"));
+    }
     for part in &imported.left_out {
         console.say(&format!("not carried: {part}"));
     }
@@ -104,6 +107,7 @@ pub(super) fn run(
         "values": [],
         "joints": imported.joints,
         "not_carried": imported.left_out,
+        "notes": imported.notes,
     });
     if console.json {
         console.data(&data)?;
