@@ -15,7 +15,7 @@ use handstand_tests::peers::{
 use handstand_xtask::program::run as succeeds;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// Measure other programs and the library on the same tasks.
 #[derive(Debug, clap::Args)]
@@ -126,10 +126,13 @@ impl Bench {
             .arg(self.scripts.join(name))
             .args(words)
             .current_dir(&self.folder)
-            .stderr(Stdio::null())
             .output()
             .map_err(|error| format!("cannot run {name}: {error}"))?;
-        serde_json::from_slice(&output.stdout).map_err(|_| format!("{name} failed"))
+        serde_json::from_slice(&output.stdout).map_err(|_| {
+            let complaints = String::from_utf8_lossy(&output.stderr);
+            let last = complaints.lines().last().unwrap_or("it said nothing");
+            format!("{name} failed: {last}")
+        })
     }
 
     fn log(&self, name: &str, words: &[&str]) -> Result<PathBuf, String> {
