@@ -114,8 +114,8 @@ pub const LISTED: &[ListedMutant] = &[
     logic(
         "watchdog fed in every turn of the loop",
         "firmware/src/app.rs",
-        "        self.pump(board);\n        if board.tick_due() {",
-        "        self.pump(board);\n        board.feed_watchdog();\n        if board.tick_due() {",
+        "        self.pass(board.clock());\n        if board.tick_due() {",
+        "        self.pass(board.clock());\n        board.feed_watchdog();\n        if board.tick_due() {",
     ),
     logic(
         "fault not logged",
