@@ -33,8 +33,8 @@ pub const BETWEEN_WRITES_US: u16 = 200;
 pub const COMMANDS_US: u16 = 200;
 
 /// Ticks in which the limits that arming names are written, in turn, and read back: 18 servos are
-/// read in nine and more. Beyond, a servo that could not be read is left out, and one that does not hold
-/// them refused.
+/// read in nine and more. Beyond, a servo that could not be read is left out, and one that does not
+/// hold them refused.
 pub const ARMING_TICKS: u8 = 30;
 
 /// No servo is asked later than this in a tick, us. 18 servos with the factory's return delay take
@@ -46,7 +46,8 @@ pub const ROUND_US: u16 = 14_000;
 /// needs about 2 ms.
 pub const LAST_RETRY_US: u16 = 7_600;
 
-/// Longest time that a command of the host's takes while torque is on, us.
+/// Longest time that a command of the host's takes while torque is on, us: 0.2 ms by the program
+/// counter of simavr.
 pub const COMMAND_US: u16 = 250;
 
 /// Time without a sign of life from the host after which an armed robot goes soft, us. It is

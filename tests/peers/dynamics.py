@@ -146,10 +146,11 @@ def accelerations(n):
 def time_robot(file, repeats):
     """Both peers' median microseconds at a robot's file."""
     name = pathlib.Path(file).stem
-    ours, theirs = mujoco.MjModel.from_xml_path(file), pin.buildModelFromUrdf(file)
-    assert ours.nv == theirs.nv == theirs.nq
-    in_c, _ = time_mujoco(ours.nv, repeats, ours)
-    in_cpp, _ = time_pinocchio(theirs.nv, repeats, theirs)
+    in_mujoco = mujoco.MjModel.from_xml_path(file)
+    in_pinocchio = pin.buildModelFromUrdf(file)
+    assert in_mujoco.nv == in_pinocchio.nv == in_pinocchio.nq
+    in_c, _ = time_mujoco(in_mujoco.nv, repeats, in_mujoco)
+    in_cpp, _ = time_pinocchio(in_pinocchio.nv, repeats, in_pinocchio)
     return {"mujoco": {name: in_c[0]}, "pinocchio": {name: in_cpp[0]}, "unit": "us"}
 
 

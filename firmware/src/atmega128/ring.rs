@@ -91,7 +91,7 @@ impl<const N: usize> Ring<N> {
         let head = self.head.get();
         let to_end = N - usize::from(head);
         let slots = self.bytes.get() as *mut u8;
-        // Up to the ring's end, then on from its beginning: one place at a time costs twice as much.
+        // Up to the ring's end, then on from its beginning: place by place it takes twice as long.
         let (first, rest) = bytes.split_at(count.min(to_end));
         // SAFETY: `head` is below N, these are at most N - `head` and then fewer than `head`, and
         // there is room for these: the consumer does not read their slots before `head` moves.

@@ -148,15 +148,15 @@ impl Servos {
         self.hold_those(board, ALL, Whom::All);
     }
 
-    /// Has those that are commanded but these stay where they stand now, in a third of the servo list,
-    /// from this place on. The place to go on from; none at the end of the list.
+    /// Has those that are commanded but these stay where they stand now, in a third of the servo
+    /// list, from this place on. The place to go on from; none at the end of the list.
     pub fn hold_third<B: Board>(&mut self, board: &mut B, from: u8, but: Driven) -> Option<u8> {
         let (third, next) = self.third(from);
         self.hold_those(board, third, Whom::AllBut(but));
         next
     }
 
-    /// The a third of the servo list that begins at this place, and the place behind it, if one is.
+    /// The third of the servo list that begins at this place, and the place behind it, if one is.
     fn third(&self, from: u8) -> (Part, Option<u8>) {
         let places = self.count.div_ceil(3);
         let next = Some(from.saturating_add(places)).filter(|next| *next < self.count);

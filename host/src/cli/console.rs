@@ -6,6 +6,7 @@ use handstand::output::write_new;
 use handstand::{Error, Result};
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::fmt;
 use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::path::Path;
@@ -104,6 +105,21 @@ impl Console {
         write_new(file, text, force)?;
         self.say(&format!("wrote {}", file.display()));
         Ok(())
+    }
+
+    /// A text that a command made and wrote to `file`, if one is named: else people get the text.
+    /// Programs get `data` with the keys `file` and `text`, one of which is null.
+    ///
+    /// # Errors
+    /// As [`Console::print`].
+    pub fn made(&self, file: Option<&Path>, text: &str, mut data: Value) -> Result<()> {
+        data["file"] = json!(file);
+        data["text"] = json!(file.is_none().then_some(text));
+        match (self.json, file) {
+            (true, _) => self.data(&data),
+            (false, None) => self.print(text),
+            (false, Some(_)) => Ok(()),
+        }
     }
 
     /// A bar of `length` steps that shows only on a terminal, and no longer than it lives.

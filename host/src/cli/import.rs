@@ -22,7 +22,7 @@
 use super::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::model::Model;
-use handstand::model::import::{ImportPlan, Locked, SpacePlan, import};
+use handstand::model::import::{ImportPlan, Imported, Locked, SpacePlan, import};
 use handstand::output::vacant;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -82,6 +82,23 @@ pub(super) fn seen_from(output: Option<&Path>, robot: &Path) -> String {
     }
 }
 
+/// Says which joints there are, and what the model has in another way than the file.
+pub(super) fn tell(imported: &Imported, console: &Console) {
+    console.say(&format!("joints: {}", imported.joints.join(", ")));
+    for note in &imported.notes {
+        console.say(&format!("note: {note}"));
+    }
+    for part in &imported.left_out {
+        console.say(&format!("not carried: {part}"));
+    }
+}
+
+/// Refuses figures that no robot in space has: they are known once its file is read by its name.
+pub(super) fn check_in_space(imported: &Imported, output: Option<&Path>) -> Result<()> {
+    let file = output.unwrap_or(Path::new("model.toml"));
+    Model::parse(&imported.toml, file).map(drop)
+}
+
 /// Imports, and lists what is not carried.
 pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
@@ -96,34 +113,19 @@ pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
         }),
     };
     let imported = import(&input::text(&args.robot)?, &args.robot, &plan)?;
-    console.say(&format!("joints: {}", imported.joints.join(", ")));
-    for note in &imported.notes {
-        console.say(&format!("note: {note}"));
-    }
-    for part in &imported.left_out {
-        console.say(&format!("not carried: {part}"));
-    }
+    tell(&imported, console);
     if args.space {
-        // Whether figures are possible is known once the robot's file is read by its name.
-        let file = args.output.as_deref().unwrap_or(Path::new("model.toml"));
-        Model::parse(&imported.toml, file)?;
+        check_in_space(&imported, args.output.as_deref())?;
     }
     if let Some(file) = &args.output {
         console.write(file, &imported.toml, args.force)?;
     }
-    let written = args.output.is_some();
     let data = json!({
         "format": imported.format,
-        "file": args.output,
-        "text": (!written).then_some(&imported.toml),
         "joints": imported.joints,
         "not_carried": imported.left_out,
         "notes": imported.notes,
     });
-    if console.json {
-        console.data(&data)?;
-    } else if !written {
-        console.print(&imported.toml)?;
-    }
+    console.made(args.output.as_deref(), &imported.toml, data)?;
     Ok(ExitStatus::Done)
 }

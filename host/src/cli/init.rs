@@ -30,7 +30,7 @@ mod robot;
 use super::{Console, ExitStatus, input};
 use handstand::first_model::estimate;
 use handstand::fitting::StopSwitch;
-use handstand::log::init::Draft;
+use handstand::log::init::{Draft, Guess};
 use handstand::log::{LogRequest, RawLog};
 use handstand::output::vacant;
 use handstand::{Error, Result};
@@ -89,9 +89,7 @@ pub fn run(args: &InitArgs, console: &Console) -> Result<ExitStatus> {
     {
         return Err(no_input(args, drive, &log));
     }
-    for guess in &draft.guesses {
-        console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
-    }
+    tell(&draft.guesses, console);
     answer(args, &mut draft)?;
     if std::io::stdin().is_terminal() && std::io::stderr().is_terminal() {
         ask(args, &mut draft)?;
@@ -101,28 +99,23 @@ pub fn run(args: &InitArgs, console: &Console) -> Result<ExitStatus> {
     estimate(&mut draft, &args.log, &StopSwitch::default(), &progress)?;
     // Nothing is printed beside the bar.
     drop(progress);
-    for guess in draft.guesses.iter().skip(said) {
-        console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
-    }
+    tell(&draft.guesses[said..], console);
     let text = draft.toml()?;
     if let Some(file) = &args.output {
         console.write(file, &text, args.force)?;
         let (model, log) = (file.display(), &args.log);
         console.say(&format!("next: handstand log check {model} {log}"));
     }
-    let written = args.output.is_some();
-    let data = json!({
-        "file": args.output,
-        "text": (!written).then_some(&text),
-        "guesses": draft.guesses,
-        "values": draft.values()?,
-    });
-    if console.json {
-        console.data(&data)?;
-    } else if !written {
-        console.print(&text)?;
-    }
+    let data = json!({ "guesses": draft.guesses, "values": draft.values()? });
+    console.made(args.output.as_deref(), &text, data)?;
     Ok(ExitStatus::Done)
+}
+
+/// Says what was guessed, and why.
+fn tell(guesses: &[Guess], console: &Console) {
+    for guess in guesses {
+        console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
+    }
 }
 
 /// Why `--drive` cannot be followed.

@@ -77,21 +77,11 @@ pub fn export(args: &ModelExportArgs, console: &Console) -> Result<ExitStatus> {
         console.say(&told(missing));
     }
     tell_files(args, &model, &exported, console);
-    let written = args.output.is_some();
-    let mut data = json!({
-        "format": format,
-        "file": args.output,
-        "text": (!written).then_some(text),
-        "not_carried": not_carried,
-    });
+    let mut data = json!({ "format": format, "not_carried": not_carried });
     if model.is_in_space() {
         data["relative_files"] = json!(exported.relative_files);
     }
-    if console.json {
-        console.data(&data)?;
-    } else if !written {
-        console.print(text)?;
-    }
+    console.made(args.output.as_deref(), text, data)?;
     Ok(ExitStatus::Done)
 }
 

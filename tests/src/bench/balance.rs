@@ -17,14 +17,12 @@ use handstand_shared::plan::{Gyro, Plan};
 /// The longest that a tick may take, us: 60 % of the period. More than that must fit into what is
 /// left: what the tick did not meet while it was measured, and what is done between ticks.
 pub const LONGEST_TICK_US: u16 = {
-    use handstand_firmware::design::{FIRST_BYTE_US, TICK_US};
+    use handstand_firmware::design::{COMMAND_US, FIRST_BYTE_US, TICK_US};
     use handstand_shared::packed::SERVOS;
     /// Every servo's answer meets the whole of a motor interrupt.
     const STALLS_US: u16 = 130 * SERVOS as u16;
     /// A servo does not answer and is asked again.
     const SILENT_US: u16 = 2 * FIRST_BYTE_US;
-    /// A command of the host's is received and obeyed: 0.2 ms by the program counter of simavr.
-    const COMMAND_US: u16 = 250;
     let longest = TICK_US / 10 * 6;
     assert!(longest + STALLS_US + SILENT_US + COMMAND_US <= TICK_US);
     longest

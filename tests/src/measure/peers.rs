@@ -5,12 +5,13 @@
 //! out. A figure is a ratio of two times taken one after the other on this machine. Fails when a
 //! target is missed.
 
+mod dynamics;
+
 use super::page::Page;
 use comfy_table::{Table, presets::UTF8_HORIZONTAL_ONLY};
 use handstand_tests::measured::Measured;
 use handstand_tests::peers::{
-    Arm, ROBOTS, Robot, angles_after, chain_fixture, dlqr_off, dlqr_seconds, farthest_off,
-    forward_seconds, runs_per_second,
+    Arm, Robot, angles_after, chain_fixture, dlqr_off, dlqr_seconds, runs_per_second,
 };
 use handstand_xtask::program::run as succeeds;
 use serde_json::Value;
@@ -200,77 +201,6 @@ impl Bench {
             let theirs = number(&self.script("sysid_mujoco.py", &words)?, &["seconds"]);
             let name = format!("diagnosis ({said}): fit by mujoco.sysid, {optimizer}");
             table.faster(&name, &[(ours, theirs)], 0.5);
-        }
-        Ok(())
-    }
-
-    fn dynamics(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
-        let file = self.folder.join("accelerations.json");
-        let sizes = [
-            ("mujoco", 3_usize, 10.0),
-            ("pinocchio", 3, 5.0),
-            ("pinocchio", 100, 5.0),
-        ];
-        let mut pairs = vec![Vec::new(); sizes.len()];
-        for _ in 0..rounds {
-            let ours = sizes.map(|(_, n, _)| forward_seconds(n));
-            let words = [
-                "--links",
-                "3",
-                "100",
-                "--accelerations",
-                "accelerations.json",
-            ];
-            let theirs = self.script("dynamics.py", &words)?;
-            for ((pairs, (peer, n, _)), ours) in pairs.iter_mut().zip(sizes).zip(ours) {
-                pairs.push((ours, 1e-6 * number(&theirs, &[peer, &n.to_string()])));
-            }
-        }
-        for (pairs, (peer, n, target)) in pairs.iter().zip(sizes) {
-            let form = if n == 3 { "closed form" } else { "recursion" };
-            let row = format!("forward dynamics, n = {n}, {form}: {peer}");
-            table.faster(&row, pairs, target);
-        }
-        let text = std::fs::read_to_string(&file).map_err(|error| error.to_string())?;
-        let states: Value = serde_json::from_str(&text).map_err(|error| error.to_string())?;
-        for n in [3, 30] {
-            let peers = ["mujoco", "pinocchio"];
-            let off = peers.map(|peer| farthest_off(&states, n, peer).unwrap_or(f64::NAN));
-            let off = off[0].max(off[1]);
-            let name = format!("accelerations, n = {n}: farthest off both, relative");
-            table.add(
-                &name,
-                ["", "", &format!("{off:.1e}"), "<= 1e-9"],
-                off <= 1e-9,
-            );
-        }
-        Ok(())
-    }
-}
-
-/// How many times faster robots in space are to be than each peer.
-const IN_SPACE: [(&str, f64); 2] = [("mujoco", 5.0), ("pinocchio", 1.3)];
-
-impl Bench {
-    /// Forward dynamics of robots in space, out of the same files.
-    fn trees(&self, rounds: usize, table: &mut Rows) -> Result<(), String> {
-        for robot in ROBOTS {
-            let file = robot.file();
-            let written = std::fs::write(self.folder.join(&file), robot.urdf());
-            written.map_err(|error| format!("cannot write {file}: {error}"))?;
-            let mut pairs = IN_SPACE.map(|_| Vec::new());
-            for _ in 0..rounds {
-                let ours = robot.forward_seconds();
-                let theirs = self.script("dynamics.py", &["--robot", &file])?;
-                for (pairs, (peer, _)) in pairs.iter_mut().zip(IN_SPACE) {
-                    pairs.push((ours, 1e-6 * number(&theirs, &[peer, robot.name])));
-                }
-            }
-            for (pairs, (peer, target)) in pairs.iter().zip(IN_SPACE) {
-                let (name, joints) = (robot.name, robot.joints());
-                let row = format!("forward dynamics in space, {name} of {joints} joints: {peer}");
-                table.faster(&row, pairs, target);
-            }
         }
         Ok(())
     }

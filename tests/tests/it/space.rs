@@ -266,17 +266,26 @@ pub(crate) fn swung(model: &Model, number: usize) -> String {
     text
 }
 
-pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (Value, String) {
+/// What a command that succeeds prints on stdout and stderr.
+pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> [String; 2] {
     let mut command = Command::new(program());
     let output = command
         .current_dir(folder)
         .args(arguments)
         .output()
         .unwrap();
-    let complaints = String::from_utf8_lossy(&output.stderr).into_owned();
+    let [text, complaints] =
+        [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
     assert!(output.status.success(), "{arguments:?}: {complaints}");
-    let data = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
-    (data, complaints)
+    [text, complaints]
+}
+
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (Value, String) {
+    let [text, complaints] = printed(folder, arguments);
+    (
+        serde_json::from_str(&text).unwrap_or(Value::Null),
+        complaints,
+    )
 }
 
 /// From the robot's file to a better model, as a user goes, the new one in another folder.

@@ -1,22 +1,12 @@
 //! A robot in space is spoken of by the names of its file.
 
-use crate::program;
-use crate::space::{CRANE, run, swung};
+use crate::space::{CRANE, printed, run, swung};
 use handstand::Model;
 use std::path::Path;
-use std::process::Command;
 
-/// What a command prints for people.
-fn printed(folder: &Path, arguments: &[&str]) -> String {
-    let mut command = Command::new(program());
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let complaints = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {complaints}");
-    let text = String::from_utf8(output.stdout).unwrap();
+/// What a command prints for people, by names alone.
+fn named(folder: &Path, arguments: &[&str]) -> String {
+    let [text, _] = printed(folder, arguments);
     for number in 1..=3 {
         for numbered in [
             format!("joint {number}"),
@@ -61,7 +51,7 @@ fn crane() -> tempfile::TempDir {
 fn commands_take_and_print_the_names_of_links_and_joints() {
     let folder = crane();
     let at = folder.path();
-    let text = printed(at, &["compare", "crane.toml", "c.csv"]);
+    let text = named(at, &["compare", "crane.toml", "c.csv"]);
     assert!(text.contains("| joint luff: rms, mrad"), "{text}");
     let widths: Vec<usize> = (text.lines())
         .filter(|line| line.starts_with('|'))
@@ -77,7 +67,7 @@ fn commands_take_and_print_the_names_of_links_and_joints() {
         "--bounds",
         "link.head.mass_kg=0.1..0.3",
     ];
-    let text = printed(at, &[&fit[..], &logs].concat());
+    let text = named(at, &[&fit[..], &logs].concat());
     for wanted in ["viscous@luff.coefficient_nm_s_rad", "link.head.mass_kg"] {
         assert!(text.contains(wanted), "{text}");
     }
@@ -88,7 +78,7 @@ fn commands_take_and_print_the_names_of_links_and_joints() {
     );
     let found = Model::load(&at.join("fitted.toml")).unwrap().effects[0].values[0];
     assert!((found / 0.06 - 1.0).abs() < 0.02, "{found}");
-    let text = printed(at, &[&["drift", "crane.toml"][..], &logs].concat());
+    let text = named(at, &[&["drift", "crane.toml"][..], &logs].concat());
     assert!(text.contains("viscous@luff.coefficient_nm_s_rad"), "{text}");
     let add = [
         "add",
@@ -98,7 +88,7 @@ fn commands_take_and_print_the_names_of_links_and_joints() {
         "added.toml",
         "--fit",
     ];
-    let text = printed(at, &[&add[..], &logs].concat());
+    let text = named(at, &[&add[..], &logs].concat());
     assert!(text.contains("viscous@luff.coefficient_nm_s_rad"), "{text}");
 }
 
@@ -113,7 +103,7 @@ fn a_verdict_names_the_joint() {
         "--holdout",
         "c.csv",
     ];
-    let text = printed(
+    let text = named(
         folder.path(),
         &[&diagnose[..], &["--within", "20s"]].concat(),
     );

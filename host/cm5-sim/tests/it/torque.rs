@@ -191,8 +191,8 @@ fn arm_elsewhere(cm5: &mut VirtualCm5, token: u16) {
     panic!("it is armed");
 }
 
-/// A third of the servo list in a tick, and no servo has torque before its goal is where it stands; a
-/// goal switches it on.
+/// A third of the servo list in a tick, and no servo has torque before its goal is where it stands;
+/// a goal switches it on.
 #[test]
 fn those_that_do_not_balance_come_on_in_thirds() {
     let (mut cm5, token) = ready_elsewhere();

@@ -120,7 +120,8 @@ pub(super) fn fingerprint(text: &str) -> String {
 impl Model {
     /// The tree of a robot in space with this model's own values: a mass in place of the file's,
     /// the centre of mass so far from the joint's frame in the file's direction, and moments of
-    /// inertia in the file's proportions, so that they stay those of a body. None of a planar chain.
+    /// inertia in the file's proportions, so that they stay those of a body. None of a planar
+    /// chain.
     pub fn tree(&self) -> Option<SpatialTree> {
         let robot = self.robot.as_ref()?;
         let mut tree = robot.tree.clone();

@@ -1,13 +1,12 @@
 //! `handstand init LOG --robot ROBOT.urdf`: a model of a robot in space whose `[log]` is the log's.
 
 use super::InitArgs;
-use crate::cli::import::{locked, seen_from};
+use crate::cli::import::{check_in_space, locked, seen_from, tell};
 use crate::cli::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::log::RawLog;
 use handstand::log::init::{LerobotUnit, RobotLog, robot_log};
 use handstand::log::lerobot::Calibration;
-use handstand::model::Model;
 use handstand::model::import::{Locked, SpacePlan, import_for_log, moving_joints};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -81,38 +80,21 @@ pub(super) fn run(
     };
     plan.name.clone_from(&args.name);
     let imported = import_for_log(&text, robot, &space, &plan)?;
-    console.say(&format!("joints: {}", imported.joints.join(", ")));
-    for guess in &guesses {
-        console.say(&format!("{}: {} ({})", guess.what, guess.guess, guess.why));
-    }
-    for note in &imported.notes {
-        console.say(&format!("note: {note}"));
-    }
-    for part in &imported.left_out {
-        console.say(&format!("not carried: {part}"));
-    }
-    // Whether figures are possible is known once the robot's file is read by its name.
-    let file = args.output.as_deref().unwrap_or(Path::new("model.toml"));
-    Model::parse(&imported.toml, file)?;
+    super::tell(&guesses, console);
+    tell(&imported, console);
+    check_in_space(&imported, args.output.as_deref())?;
     if let Some(file) = &args.output {
         console.write(file, &imported.toml, args.force)?;
         let (model, log) = (file.display(), &args.log);
         console.say(&format!("next: handstand compare {model} {log}"));
     }
-    let written = args.output.is_some();
     let data = json!({
-        "file": args.output,
-        "text": (!written).then_some(&imported.toml),
         "guesses": guesses,
         "values": [],
         "joints": imported.joints,
         "not_carried": imported.left_out,
         "notes": imported.notes,
     });
-    if console.json {
-        console.data(&data)?;
-    } else if !written {
-        console.print(&imported.toml)?;
-    }
+    console.made(args.output.as_deref(), &imported.toml, data)?;
     Ok(ExitStatus::Done)
 }

@@ -115,7 +115,8 @@ pub const LISTED: &[ListedMutant] = &[
         "watchdog fed in every turn of the loop",
         "firmware/src/app.rs",
         "        self.pass(board.clock());\n        if board.tick_due() {",
-        "        self.pass(board.clock());\n        board.feed_watchdog();\n        if board.tick_due() {",
+        "        self.pass(board.clock());\n        board.feed_watchdog();\n        \
+         if board.tick_due() {",
     ),
     logic(
         "fault not logged",

@@ -205,12 +205,8 @@ impl Builder<'_> {
             .find(|&i| !carries(i));
         if let Some(tip) = tip {
             let (name, line) = &self.found.bodies[tip];
-            let place = Place {
-                line: Some(*line),
-                ..Place::file(self.file)
-            };
             return Err(Error::data(
-                place,
+                self.line(*line),
                 format!(
                     "the link {name}, which joint {} moves, has no mass, nor has anything that is \
                      fixed to it",
@@ -223,18 +219,22 @@ impl Builder<'_> {
         Ok(self.found)
     }
 
+    /// A line of the robot's file.
+    fn line(&self, line: usize) -> Place {
+        Place {
+            line: Some(line),
+            ..Place::file(self.file)
+        }
+    }
+
     /// Refuses moments about a joint's axis that are below 0 by more than noise.
     fn possible(&self) -> Result<()> {
         let links = self.found.tree.links.iter().zip(&self.found.bodies);
         for ((link, (name, line)), joint) in links.zip(&self.found.joints) {
             let moment = about_axis(link);
             if moment < -NOISE_M2 * link.mass_kg {
-                let place = Place {
-                    line: Some(*line),
-                    ..Place::file(self.file)
-                };
                 return Err(Error::data(
-                    place,
+                    self.line(*line),
                     format!(
                         "the link {name}, with what is fixed to it, has a moment of inertia of \
                          {moment:.3e} kg m^2 about the axis of {}",
