@@ -87,6 +87,7 @@ pub fn model(drive: Drive, log: LogColumns) -> Model {
         laws: Vec::new(),
         free: Vec::new(),
         bounds: Vec::new(),
+        uncertain: Vec::new(),
         log,
     }
 }

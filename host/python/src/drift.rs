@@ -7,7 +7,7 @@ use crate::motion::Motion;
 use crate::refit::names;
 use crate::value::plain;
 use crate::work;
-use handstand::fitting::{DriftSession, Horizon, free_parameters};
+use handstand::fitting::{DriftSession, Horizon, freed};
 use handstand::motion::Split;
 use pyo3::prelude::*;
 
@@ -36,9 +36,9 @@ pub fn drift<'py>(
     free: Option<&Bound<'py, PyAny>>,
     horizon_s: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let model = model.borrow().clone();
+    let mut model = model.borrow().clone();
     let named = free.map(names).transpose()?.unwrap_or_default();
-    let free = free_parameters(&model.inner, &named).map_err(exception)?;
+    let free = freed(&mut model.inner, &named).map_err(exception)?;
     let mut sessions: Vec<DriftSession> = Vec::new();
     for (index, log) in logs.try_iter()?.enumerate() {
         let log = log?;

@@ -6,8 +6,7 @@ use crate::model::Model;
 use crate::value::plain;
 use crate::work::{self, WorkReport};
 use handstand::fitting::{
-    Addition, Refitted, Undetermined, add_effects, candidates_named, free_parameters, refit,
-    with_refitted,
+    Addition, Refitted, Undetermined, add_effects, candidates_named, freed, refit, with_refitted,
 };
 use handstand::model::JointNames;
 use handstand::report::{refitted_json, refitted_text};
@@ -123,9 +122,9 @@ pub fn fit(
     progress: Option<&Bound<'_, PyAny>>,
     hold_out: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Refit> {
-    let model = model.borrow().clone();
+    let mut model = model.borrow().clone();
     let named = free.map(names).transpose()?.unwrap_or_default();
-    let free = free_parameters(&model.inner, &named).map_err(exception)?;
+    let free = freed(&mut model.inner, &named).map_err(exception)?;
     let split =
         learned_and_held_out(logs, judging(py, holdout, hold_out)?, &model)?.named(&model)?;
     let horizon = horizon(horizon_s)?;

@@ -79,10 +79,12 @@ impl DiagnosisFile {
         Err(Error::data(Place::file(&self.path), what, remedy))
     }
 
-    /// Addresses of values of the model file that it found wrong.
+    /// Addresses of values of the model file that it found wrong, beyond what its owner allows.
     pub fn wrong_values(&self) -> Vec<String> {
         let wrong = self.diagnosis["wrong_values"].as_array();
-        let paths = wrong.into_iter().flatten().map(|value| &value["path"]);
+        let mut wrong: Vec<_> = wrong.into_iter().flatten().collect();
+        wrong.retain(|value| value["within_uncertainty"] != true);
+        let paths = wrong.into_iter().map(|value| &value["path"]);
         paths
             .filter_map(|path| Some(path.as_str()?.to_string()))
             .collect()

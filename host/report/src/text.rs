@@ -80,8 +80,16 @@ fn effects(effects: &[FittedEffect], names: &JointNames) -> Option<String> {
 
 fn wrong_values(wrong: &[WrongValue]) -> Option<String> {
     let line = |wrong: &WrongValue| format!("{}: {}", wrong.fitted.path, change(wrong));
-    let lines: Vec<String> = wrong.iter().map(line).collect();
-    list("Wrong values", &lines)
+    let lines = |within: bool| -> Vec<String> {
+        let own = wrong.iter().filter(|w| w.within_uncertainty == within);
+        own.map(line).collect()
+    };
+    let lists = [
+        list("Wrong values", &lines(false)),
+        list("Better values, within their uncertainty", &lines(true)),
+    ];
+    let lists: Vec<String> = lists.into_iter().flatten().collect();
+    (!lists.is_empty()).then(|| lists.join("\n\n"))
 }
 
 fn error(diagnosis: &Diagnosis) -> Option<String> {

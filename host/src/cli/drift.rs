@@ -18,7 +18,7 @@
 
 use super::{Console, ExitStatus, input, show};
 use handstand::Result;
-use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free_parameters};
+use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, freed};
 use handstand::log::{LogRequest, expanded};
 use handstand::model::JointNames;
 use handstand::output::number::exact;
@@ -42,9 +42,9 @@ pub struct DriftArgs {
 
 /// Fits each log, compares, prints.
 pub fn run(args: &DriftArgs, console: &Console) -> Result<ExitStatus> {
-    let model = input::model(&args.model)?;
+    let mut model = input::model(&args.model)?;
     input::tell_joints(&model, console);
-    let free = free_parameters(&model, &args.free)?;
+    let free = freed(&mut model, &args.free)?;
     // A session is read by itself; that none shares rows with another, or is a copy, shows in all.
     expanded(&args.logs)?;
     let sessions = args.logs.iter().map(|log| {

@@ -15,7 +15,7 @@
 //! `refused`, `blind` and `mixed`.
 
 use super::{Console, ExitStatus, input, show};
-use handstand::fitting::{Refitted, Undetermined, free_parameters, refit, with_refitted};
+use handstand::fitting::{Refitted, Undetermined, freed, refit, with_refitted};
 use handstand::log::LogRequest;
 use handstand::model::edit::{moved, set_bounds};
 use handstand::model::{JointNames, ParameterPath};
@@ -46,9 +46,9 @@ pub struct FitArgs {
 /// Fits, writes, prints.
 pub fn run(args: &FitArgs, console: &Console) -> Result<ExitStatus> {
     let text = bounded(args)?;
-    let model = Model::parse(&text, &args.model)?;
+    let mut model = Model::parse(&text, &args.model)?;
     input::tell_joints(&model, console);
-    let free = free_parameters(&model, &args.free)?;
+    let free = freed(&mut model, &args.free)?;
     let split = args.fit.motions(&model, &args.logs, console)?;
     let horizon = args.fit.judging.run.horizon;
     let refitted = refit(&model, &free, &split, horizon, &console.progress());

@@ -1,5 +1,6 @@
 //! A case: what is hidden in which rig at which seed, and the files of it.
 
+use super::approximate::make_approximate;
 use super::family::Family;
 use super::{mujoco, robot};
 use handstand::challenge::{Bench, BenchEffect, Motions, bench, weakened_arm};
@@ -127,7 +128,7 @@ impl Case {
     /// # Errors
     /// A file that cannot be written, a rig that cannot be balanced, a script that fails.
     pub fn write(&self, dir: &Path) -> Result<Files, String> {
-        match self.truth {
+        let files = match self.truth {
             Truth::Own => {
                 let Some(bench) = bench(self.family.motions(), self.seed, &self.hidden) else {
                     return Err("the robot cannot be balanced".to_string());
@@ -136,7 +137,11 @@ impl Case {
             }
             Truth::Mujoco => mujoco::write(self, dir),
             Truth::Robot => robot::write(self, dir),
+        }?;
+        if let Some(stated) = self.family.stated() {
+            make_approximate(&files.nominal, self.seed, stated)?;
         }
+        Ok(files)
     }
 
     /// Writes the bench arm with what it hides at this share of its strength into an empty folder.

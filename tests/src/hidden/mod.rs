@@ -4,6 +4,7 @@
 //! nothing of either. The virtual robot has the library's plant; there the question is what the
 //! robot's own recordings tell.
 
+mod approximate;
 mod case;
 mod detection;
 mod family;

@@ -121,8 +121,10 @@ fn set(explanation: &Json) -> Vec<String> {
     if !effects.is_empty() {
         effects.iter().map(SaidEffect::address).collect()
     } else {
-        let values = values(&explanation["wrong_values"]);
-        values.iter().filter_map(|(path, _)| name(path)).collect()
+        let wrong = explanation["wrong_values"].as_array().into_iter().flatten();
+        let beyond = wrong.filter(|value| value["within_uncertainty"] != true);
+        let paths = beyond.filter_map(|value| value["path"].as_str());
+        paths.filter_map(name).collect()
     }
 }
 

@@ -58,6 +58,7 @@ impl Evaluator<'_> {
                 FitOptions::iterations(0),
             );
             let rest = fit(&model, &free, &self.search, window_starts, options);
+            let rest = rest.with_prior_as(&chosen.search);
             let mut others = self.others(chosen, part, &rest);
             others.truncate(SIMULATED);
             let same = others.into_par_iter().filter(|other| predicted.fits(other));
@@ -111,7 +112,9 @@ impl Evaluator<'_> {
                     let known = given.is_some_and(|given| path.set(&mut model, given));
                     debug_assert!(known, "a wrong value is one of the model's");
                 }
-                free.retain(|path| !paths.contains(path));
+                let known = |path: &ParameterPath| self.start.uncertain(*path).copied();
+                free.retain(|path| !paths.contains(path) || known(path).is_some());
+                model.uncertain.extend(paths.iter().filter_map(known));
             }
         }
         (model, free)

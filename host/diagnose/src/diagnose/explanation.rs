@@ -124,10 +124,11 @@ impl<'a> VerdictEvidence<'a> {
     /// Whether rivals leave the verdict open. The values that the file frees are what its owner
     /// does not know: where they explain all, an effect that would too is only mentioned.
     fn is_open(&self, rivals: &[&Hypothesis]) -> bool {
-        let free = &self.evaluator.base.search.free;
+        let (start, free) = (&self.evaluator.start, &self.evaluator.base.search.free);
+        let is_unknown = |path| free.contains(path) && start.uncertain(*path).is_none();
         let is_freed = match self.explanation {
             Explanation::Refit(_) => true,
-            Explanation::Value(value) => value.values.iter().all(|path| free.contains(path)),
+            Explanation::Value(value) => value.values.iter().all(is_unknown),
             _ => false,
         };
         let open = |rivals: &[&Hypothesis]| rivals.iter().any(|rival| !self.says_the_same(rival));

@@ -63,6 +63,9 @@ pub struct WrongValue {
     pub given: f64,
     /// Whether the file frees it: its owner does not claim to know it.
     pub free: bool,
+    /// Whether the motions ask for a value that its owner would not wonder at: within two standard
+    /// uncertainties of the given one.
+    pub within_uncertainty: bool,
     /// The value that the motions ask for.
     #[serde(flatten)]
     pub fitted: FittedValue,

@@ -111,8 +111,11 @@ impl Evaluator<'_> {
                 .sum::<usize>();
             // Those of the effects come last.
             let (base, own) = rest.free.split_at(rest.free.len() - added);
+            let mut base = base.to_vec();
+            base.retain(|path| !paths.contains(path));
+            model.forget(&paths);
             Some(Substitute {
-                free: [base, &paths[..], own].concat(),
+                free: [&base[..], &paths[..], own].concat(),
                 set: set.clone(),
                 values: paths,
                 model,
@@ -125,13 +128,16 @@ impl Evaluator<'_> {
         others
     }
 
-    /// Values, alone and as kinds, that may stand for a part: those that are not free already.
+    /// Values, alone and as kinds, that may stand for a part: those that are not free already, or
+    /// are known beforehand.
     fn replacing_values(&self, part: &ReplaceablePart, rest: &Fit) -> Vec<Vec<ParameterPath>> {
         let single = self.open_values().into_iter().map(|path| vec![path]);
         let mut values: Vec<Vec<ParameterPath>> = single.collect();
         values.extend(kinds_of_values(&self.start));
         values.retain(|paths| {
-            let is_free = |path: &ParameterPath| rest.free.contains(path);
+            let is_free = |path: &ParameterPath| {
+                rest.free.contains(path) && rest.model.uncertain(*path).is_none()
+            };
             !paths
                 .iter()
                 .any(|path| is_free(path) || self.known.contains(path))

@@ -176,16 +176,8 @@ pub(crate) fn independent_share(fit: &Fit, data: &FitProblem) -> f64 {
 
 /// Samples that count as independent: fewer, the more neighbouring residuals agree.
 fn effective_samples(errors: &BlockErrors, fit: &Fit) -> f64 {
-    let (mut product, mut square) = (0.0, 1e-300);
-    for window in &fit.residuals.windows {
-        for pair in window.windows(2) {
-            product += pair[0] * pair[1];
-            square += pair[0] * pair[0];
-        }
-    }
-    let correlation = (product / square).clamp(0.0, 0.999);
     let n = errors.count() as f64;
-    (n * (1.0 - correlation) / (1.0 + correlation))
+    (n * fit.residuals.independent_share())
         .max(2.0 * errors.len() as f64)
         .min(n)
 }

@@ -22,15 +22,15 @@ impl Evaluator<'_> {
         self.fit_values(&self.given, &self.open_values(), least)
     }
 
-    /// Every value that is not free fitted along with those that are; the best are evaluated, with
-    /// `least` as above.
+    /// Every value that is not free, or is known beforehand, fitted along with those that are as if
+    /// nothing were known of it; the best are evaluated, with `least` as above.
     pub fn try_values_refitted(&self, least: Option<f64>) -> Vec<Hypothesis> {
         let free = &self.base.search.free;
         if free.is_empty() {
             return Vec::new();
         }
         let mut paths = self.open_values();
-        paths.retain(|path| !free.contains(path));
+        paths.retain(|path| !free.contains(path) || self.start.uncertain(*path).is_some());
         self.fit_values(&self.base, &paths, least)
     }
 
@@ -63,7 +63,7 @@ impl Evaluator<'_> {
         let glance = |&path: &ParameterPath| {
             let from = &from.search;
             let options = FitOptions::iterations(LOOK).glance();
-            let search = from.with_free(&from.model, &[path], &self.search, options);
+            let search = from.with_unknown(path, &self.search, options);
             Hypothesis {
                 values: vec![path],
                 ..Hypothesis::new(Vec::new(), search)
@@ -167,9 +167,11 @@ pub(super) fn contradicted_paths(
 pub(super) fn compared(given: &Model, fitted: &[FittedValue]) -> Vec<WrongValue> {
     let values = fitted.iter().filter_map(|fitted| {
         let path: ParameterPath = fitted.path.parse().ok()?;
+        let known = given.uncertain(path);
         Some(WrongValue {
+            within_uncertainty: known.is_some_and(|known| known.allows(fitted.value)),
             given: path.get(given)?,
-            free: given.free.contains(&path),
+            free: given.free.contains(&path) && given.uncertain(path).is_none(),
             fitted: fitted.clone(),
         })
     });

@@ -87,20 +87,24 @@ fn unrivalled(diagnosis: &Diagnosis) -> String {
 
 /// "Your value of the mass of link 1 is wrong: 0.2 -> 0.246 kg (0.244 to 0.248)."
 fn wrong_values(wrong: &[WrongValue]) -> String {
-    let changes: Vec<String> = wrong.iter().map(change).collect();
-    match wrong {
+    let one = |w: &WrongValue| format!("{}: {}", value_name(&w.fitted.path), change(w));
+    let all = |wrong: &[&WrongValue]| {
+        let all: Vec<String> = wrong.iter().map(|w| one(w)).collect();
+        all.join("; ")
+    };
+    let beyond: Vec<&WrongValue> = wrong.iter().filter(|w| !w.within_uncertainty).collect();
+    match beyond.as_slice() {
+        [] => format!(
+            "Nothing is missing, and no value is off by more than its uncertainty; these motions \
+             tell better: {}.",
+            all(&wrong.iter().collect::<Vec<_>>())
+        ),
         [one] => format!(
             "Your value of {} is wrong: {}.",
             value_name(&one.fitted.path),
-            changes[0]
+            change(one)
         ),
-        _ => {
-            let paths = wrong.iter().zip(&changes);
-            let all: Vec<String> = paths
-                .map(|(w, change)| format!("{}: {change}", value_name(&w.fitted.path)))
-                .collect();
-            format!("Values of the model are wrong: {}.", all.join("; "))
-        }
+        several => format!("Values of the model are wrong: {}.", all(several)),
     }
 }
 
@@ -159,7 +163,10 @@ pub(super) fn what_was_found(effects: &[FittedEffect], wrong: &[WrongValue]) -> 
 /// of link 1 is twice what the file says". Of values that the file frees, whose owner claims
 /// nothing of them, only where there are no others.
 fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
-    let claimed: Vec<&WrongValue> = wrong.iter().filter(|w| !w.free).collect();
+    let claimed: Vec<&WrongValue> = wrong
+        .iter()
+        .filter(|w| !w.free && !w.within_uncertainty)
+        .collect();
     let wrong = if claimed.is_empty() {
         wrong.iter().collect()
     } else {
@@ -308,14 +315,17 @@ fn after_verdict(diagnosis: &Diagnosis) -> Vec<String> {
     }
 }
 
-/// The wrong values fitted, then both models side by side.
+/// The wrong values fitted, then both models side by side. Where none is beyond its uncertainty, as
+/// the file has them: with what is known of them.
 fn refit(diagnosis: &Diagnosis) -> Vec<String> {
     let (holdout, judged) = held_out(diagnosis);
-    let free: Vec<String> = diagnosis
-        .wrong_values
-        .iter()
-        .map(|wrong| format!(" --free {}", wrong.fitted.path))
-        .collect();
+    let mut wrong = diagnosis.wrong_values.iter();
+    let free: Vec<String> = if wrong.clone().all(|w| w.within_uncertainty) {
+        Vec::new()
+    } else {
+        let option = |wrong: &WrongValue| format!(" --free {}", wrong.fitted.path);
+        wrong.by_ref().map(option).collect()
+    };
     let (free, horizon) = (free.concat(), horizon(diagnosis));
     vec![
         format!("Mend it: handstand fit {MODEL} {LOGS}{free}{holdout}{horizon} -o better.toml"),

@@ -9,10 +9,12 @@ mod columns;
 mod provenance;
 #[cfg(test)]
 mod tests;
+mod uncertainty;
 
 pub use bounds::set_bounds;
 pub use columns::{ChosenColumn, ColumnChoice, set_log_columns};
 pub use provenance::{FitRecord, renew_provenance};
+pub use uncertainty::keep_given;
 
 use super::field::{JOINT_INERTIA, LinkField};
 use super::path::ParameterPath;

@@ -25,6 +25,7 @@ mod robot;
 pub mod source;
 pub mod suggest;
 mod toml_reason;
+mod uncertain;
 mod unit;
 
 pub use columns::{ArmFigures, Column, ColumnMean, JointColumns, LogColumns, MeasuredSignal};
@@ -40,6 +41,7 @@ pub use rate_sensor::RateSensor;
 pub use reason::ModelReason;
 pub use robot::Robot;
 pub use toml_reason::TomlReason;
+pub use uncertain::{Prior, UncertainValue, typical};
 pub use unit::{Dimension, Unit};
 
 use crate::effects::{self, Effect, Scope};
@@ -78,6 +80,8 @@ pub struct Model {
     pub free: Vec<ParameterPath>,
     /// Values that a fit keeps from low to high, within what is possible: the user knows so much.
     pub bounds: Vec<(ParameterPath, (f64, f64))>,
+    /// What is known beforehand of values that are free, but not exactly: a fit takes it as a prior.
+    pub uncertain: Vec<UncertainValue>,
     /// How this rig's logs name and scale their columns.
     pub log: LogColumns,
 }

@@ -228,6 +228,11 @@ impl<'a> Table<'a> {
         item.is_some_and(|item| item.is_array() || item.is_array_of_tables())
     }
 
+    /// Whether the item under `key` is a table.
+    pub fn is_table(&self, key: &str) -> bool {
+        self.items.get(key).is_some_and(Item::is_table_like)
+    }
+
     /// The table under `key`, if there is one.
     pub fn table(&self, key: &str) -> Result<Option<Table<'a>>> {
         let table = self.get(key, "a table", |item| Some((item, item.as_table_like()?)))?;

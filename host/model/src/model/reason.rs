@@ -237,6 +237,12 @@ pub enum ModelReason {
         /// Its address.
         path: String,
     },
+    /// A value that the file frees and knows.
+    #[error("`{path}` is free, and so it can have no uncertainty")]
+    FreeAndUncertain {
+        /// Its address.
+        path: String,
+    },
     /// Bounds that leave no room.
     #[error("from {low} to {high} `{path}` has no possible value")]
     NoBounds {
@@ -339,6 +345,9 @@ impl Reason for ModelReason {
             FreeAbsent { .. } => "add its link, drive or effect, or remove it here",
             FreeInfinite { .. } => "give it a value to start from",
             FreeTwice { .. } => "remove one",
+            FreeAndUncertain { .. } => {
+                "free is what is not known beforehand: keep it under `[fit] free`, or here"
+            }
             NoBounds {
                 possible: (low, high),
                 ..

@@ -206,6 +206,7 @@ pub(crate) fn diagnosis() -> Diagnosis {
         wrong_values: vec![WrongValue {
             given: 1.2,
             free: false,
+            within_uncertainty: false,
             fitted: fitted("motor.torque_nm", "N m", [1.47, 1.44, 1.5]),
         }],
         error: ErrorReduction {

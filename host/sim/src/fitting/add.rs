@@ -173,7 +173,10 @@ pub fn with_refitted(
 
 /// The text with the values of a fit, and the integration step that they need.
 fn with_values(text: &str, path: &Path, model: &Model, refitted: &Refitted) -> Result<String> {
-    let text = edit::set_values(text, path, &refitted.values_of(model))?;
+    let values = refitted.values_of(model);
+    let paths: Vec<ParameterPath> = values.iter().map(|(path, _)| *path).collect();
+    let text = edit::keep_given(text, path, &paths, model)?;
+    let text = edit::set_values(&text, path, &values)?;
     match refitted.shorter_step_s {
         Some(step_s) => edit::set_step(&text, path, step_s),
         None => Ok(text),

@@ -45,11 +45,9 @@ pub fn intervals_of(
     let count = places.len();
     let clusters = clusters(fit, data).into_iter();
     let clusters: Vec<Cluster> = clusters.map(|cluster| cluster.of(places)).collect();
-    let normal: DMatrix<f64> = clusters
-        .iter()
-        .fold(DMatrix::zeros(count, count), |sum, cluster| {
-            sum + &cluster.information
-        });
+    let known = DMatrix::from_diagonal(&fit.value_prior().precision.select_rows(places));
+    let normal: DMatrix<f64> =
+        (clusters.iter()).fold(known, |sum, cluster| sum + &cluster.information);
     let inverse = inverse(&normal)?;
     let residual = residual_variance(fit);
     let jackknife = jackknife(&clusters, &normal);

@@ -74,6 +74,8 @@ pub struct Fit {
     /// Simulations of the whole data that it took.
     pub simulations: usize,
     pub(super) jacobian: Vec<WindowJacobian>,
+    /// How often what is known of the values beforehand counts.
+    pub(super) prior_weight: f64,
     /// Whether the derivatives are those at the fitted values, not corrected ones of steps before.
     pub(super) fresh: bool,
 }

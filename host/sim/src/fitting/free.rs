@@ -34,6 +34,19 @@ impl From<FreeError> for Error {
     }
 }
 
+/// Addresses of the values to fit: those in `named`, of which the model then takes nothing for known
+/// beforehand, or the model's own.
+///
+/// # Errors
+/// As [`FreeError`] says.
+pub fn freed(model: &mut Model, named: &[String]) -> Result<Vec<ParameterPath>, FreeError> {
+    let free = free_parameters(model, named)?;
+    if !named.is_empty() {
+        model.forget(&free);
+    }
+    Ok(free)
+}
+
 /// Addresses of the values to fit: those in `named`, each once, or the model's own.
 ///
 /// # Errors

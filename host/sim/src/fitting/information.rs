@@ -1,7 +1,6 @@
 //! What data say of a fit's free values, and what of the misfit those values could still remove.
 
 use super::fit::Fit;
-use super::normal::NormalEquations;
 use nalgebra::{DMatrix, DVector};
 
 /// Normal equations of a fit's free values with the windows' start states eliminated, in units of
@@ -20,7 +19,7 @@ impl Fit {
     /// The information in the data at the fitted values; the fit must have its derivatives, which a
     /// [rough](super::FitOptions::rough) one lacks.
     pub fn information(&self) -> Information {
-        let normal = NormalEquations::assemble(self.free.len(), &self.jacobian, 0.0);
+        let normal = self.normal_equations(0.0);
         Information {
             matrix: normal.matrix,
             gradient: normal.gradient,

@@ -8,7 +8,6 @@ use super::covariance::inverse;
 use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::jacobian::difference;
-use super::normal::NormalEquations;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::window_start::WindowStart;
@@ -102,7 +101,7 @@ impl Descent {
         if jumping.is_empty() {
             return None;
         }
-        let steps = NormalEquations::assemble(found.free.len(), &found.jacobian, 0.0);
+        let steps = found.normal_equations(0.0);
         let inverse = inverse(&steps.matrix)?;
         let places = jumping.par_iter().flat_map(|&value| {
             let error = (variance(found) * inverse[(value, value)]).sqrt();

@@ -3,10 +3,11 @@
 
 use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
-use super::normal::NormalEquations;
+use super::prior::ValuePrior;
 use super::residual::{left_hidden, residuals};
 use super::told_before::begin_as_told;
 use super::window_start::{StartGuess, WindowStart};
+use crate::model::Model;
 use crate::sim::HiddenUnknown;
 use nalgebra::DVector;
 
@@ -82,6 +83,7 @@ impl<'a> LevenbergMarquardt<'a> {
             self.linearise();
         }
         for _ in 0..options.iterations {
+            self.fit.weigh_prior();
             let before = self.cost();
             let was_fresh = self.fit.fresh;
             let Some(step) = self.step(&mut damping) else {
@@ -122,6 +124,7 @@ impl<'a> LevenbergMarquardt<'a> {
         if !self.fit.fresh && !options.rough {
             self.linearise();
         }
+        self.fit.weigh_prior();
         self.fit
     }
 
@@ -156,13 +159,13 @@ impl<'a> LevenbergMarquardt<'a> {
         }
     }
 
-    /// Squared residuals plus the starts' weak priors.
+    /// Squared residuals plus the starts' weak priors and what is known of the values.
     fn cost(&self) -> f64 {
-        self.fit.residuals.cost() + self.prior_cost(&self.fit.window_starts)
+        self.fit.residuals.cost() + self.prior_cost(&self.fit.model, &self.fit.window_starts)
     }
 
-    fn prior_cost(&self, window_starts: &[WindowStart]) -> f64 {
-        let mut sum = 0.0;
+    fn prior_cost(&self, model: &Model, window_starts: &[WindowStart]) -> f64 {
+        let mut sum = ValuePrior::of(model, &self.fit.free, self.fit.prior_weight).cost;
         for (window_start, guess) in window_starts.iter().zip(&self.guesses) {
             let (precision, pull) = guess.prior(window_start);
             sum += precision.component_mul(&pull).dot(&pull);
@@ -175,8 +178,7 @@ impl<'a> LevenbergMarquardt<'a> {
         let before = self.cost();
         let tries = if self.fit.fresh { TRIES.0 } else { TRIES.1 };
         for _ in 0..tries {
-            let free = self.fit.free.len();
-            let normal = NormalEquations::assemble(free, &self.fit.jacobian, *damping);
+            let normal = self.fit.normal_equations(*damping);
             let (model, values) = self.moved(&normal, *damping);
             let mut window_starts = self.fit.window_starts.clone();
             let steps: Vec<DVector<f64>> = window_starts
@@ -188,7 +190,7 @@ impl<'a> LevenbergMarquardt<'a> {
                 .collect();
             let residuals = residuals(&model, self.data, &window_starts);
             self.fit.simulations += 1;
-            let prior = self.prior_cost(&window_starts);
+            let prior = self.prior_cost(&model, &window_starts);
             let after = residuals.cost() + prior;
             if after < before {
                 let windows = self.fit.jacobian.iter().zip(&steps);

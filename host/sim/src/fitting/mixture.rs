@@ -11,11 +11,16 @@ const LEAST: f64 = 1e-6;
 /// Share of a mixture from which a value belongs to it.
 const BELONGS: f64 = 0.1;
 
-/// The values in the mixture of which the data say least, where that is nothing; else none. The fit
-/// must have its derivatives.
+/// The values in the mixture of which the data say least, where that is nothing; else none, nor
+/// where one of them is known beforehand, which settles the mixture. The fit must have its
+/// derivatives.
 pub(super) fn untold_mixture(fit: &Fit) -> Vec<ParameterPath> {
-    let places = mixed(&fit.information().matrix);
-    places.into_iter().map(|place| fit.free[place]).collect()
+    let places = mixed(&fit.information().matrix).into_iter();
+    let mixed: Vec<ParameterPath> = places.map(|place| fit.free[place]).collect();
+    if mixed.iter().any(|path| fit.model.uncertain(*path).is_some()) {
+        return Vec::new();
+    }
+    mixed
 }
 
 /// Places of the values in the mixture that an information matrix leaves open.

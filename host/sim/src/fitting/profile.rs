@@ -24,15 +24,13 @@ const REACHES: [f64; 8] = [1.3, 1.7, 2.2, 2.8, 3.6, 4.6, 6.0, 8.0];
 /// than a smooth one would be at the end. The other values and the start states go along as they
 /// would if all were straight, or, where a law jumps, are fitted there.
 pub fn profile_intervals(fit: &Fit, data: &FitProblem, intervals: &[Interval]) -> Vec<Interval> {
-    let count = fit.free.len();
     let sum = |sum: DMatrix<f64>, cluster: &super::cluster::Cluster| sum + &cluster.information;
-    let normal = clusters(fit, data)
-        .iter()
-        .fold(DMatrix::zeros(count, count), sum);
+    let known = DMatrix::from_diagonal(&fit.value_prior().precision);
+    let normal = clusters(fit, data).iter().fold(known, sum);
     let Some(inverse) = inverse(&normal) else {
         return intervals.to_vec();
     };
-    let steps = NormalEquations::assemble(count, &fit.jacobian, 0.0);
+    let steps = fit.normal_equations(0.0);
     let least = fit.residuals.cost();
     let jumps = fit.free.iter().any(jumping_law::jumps);
     intervals

@@ -1,4 +1,5 @@
-//! What of a change in the prediction the fitted parameters and start states can't imitate.
+//! What of a change in the prediction the fitted parameters and start states can't imitate, as far
+//! as what is known of the parameters beforehand lets them.
 
 use super::fit::Fit;
 use super::normal::WindowJacobian;
@@ -22,7 +23,7 @@ impl<'a> Projector<'a> {
             .map(WindowJacobian::reduced_parameters)
             .collect();
         let count = fit.free.len();
-        let mut normal = DMatrix::zeros(count, count);
+        let mut normal = DMatrix::from_diagonal(&fit.value_prior().precision);
         for window in &reduced {
             normal += window.tr_mul(window);
         }

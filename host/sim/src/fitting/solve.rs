@@ -35,19 +35,38 @@ impl Fit {
     /// The fit with one value held at a place, all others led there by the derivatives at hand;
     /// `None` where the value may not be there.
     pub(super) fn holding(&self, value: usize, at: f64, data: &FitProblem) -> Option<Fit> {
-        let mut start = self.clone();
-        let path = start.free.remove(value);
+        let path = self.free[value];
+        let mut start = self.without(value);
         let (low, high) = path.bounds(&self.model);
         let is_possible = (low..=high).contains(&at) && path.set(&mut start.model, at);
         is_possible.then_some(())?;
         start.residuals = residuals(&start.model, data, &start.window_starts);
         for (window, residual) in start.jacobian.iter_mut().zip(&start.residuals.windows) {
-            window.parameters = window.parameters.clone().remove_column(value);
             window.residual.copy_from_slice(residual);
         }
         (start.converged, start.fresh) = (false, false);
         let options = FitOptions::iterations(HOLDING).glance();
         Some(LevenbergMarquardt::new(start, data, guesses(data)).run(options))
+    }
+
+    /// The fit with one of its values no longer free.
+    fn without(&self, value: usize) -> Fit {
+        let mut fit = self.clone();
+        fit.free.remove(value);
+        for window in &mut fit.jacobian {
+            window.parameters = window.parameters.clone().remove_column(value);
+        }
+        fit
+    }
+
+    /// Fits a value of which nothing is taken for known beforehand, along with those that are free:
+    /// the last one of them.
+    pub fn with_unknown(&self, path: ParameterPath, data: &FitProblem, options: FitOptions) -> Fit {
+        let known = self.free.iter().position(|own| *own == path);
+        let mut from = known.map_or_else(|| self.clone(), |value| self.without(value));
+        from.model.forget(&[path]);
+        let model = from.model.clone();
+        from.with_free(&model, &[path], data, options)
     }
 
     /// How far the values would move to what left these residuals at them, were all straight; not
@@ -58,10 +77,12 @@ impl Fit {
         for (window, residual) in windows.iter_mut().zip(&other.windows) {
             window.residual.copy_from_slice(residual);
         }
-        let [before, after] = [&self.jacobian, &windows]
+        let [mut before, after] = [&self.jacobian, &windows]
             .map(|windows| NormalEquations::assemble(count, windows, 0.0));
+        let gradient = before.gradient.clone();
+        before.know(&self.value_prior());
         inverse(&before.matrix).map_or(DVector::zeros(count), |inverse| {
-            inverse * (after.gradient - before.gradient)
+            inverse * (after.gradient - gradient)
         })
     }
 
@@ -92,6 +113,7 @@ impl Fit {
             converged: false,
             simulations: 1,
             jacobian: Vec::new(),
+            prior_weight: 1.0,
             fresh: false,
         };
         let mut run = LevenbergMarquardt::new(start, data, guesses(data));
@@ -126,6 +148,7 @@ pub fn fit(
         converged: false,
         simulations: 1,
         jacobian: Vec::new(),
+        prior_weight: 1.0,
         fresh: false,
     };
     LevenbergMarquardt::new(start, data, guesses).run(options)

@@ -148,6 +148,7 @@ fn wrong(path: &str, given: f64, to: f64) -> WrongValue {
     WrongValue {
         given,
         free: path.starts_with("viscous"),
+        within_uncertainty: false,
         fitted: value(path, to, false),
     }
 }

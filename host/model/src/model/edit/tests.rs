@@ -274,3 +274,32 @@ fn bounds_are_written_changed_and_lifted() {
         assert!(set_bounds(MODEL, path(), &[(com, Some((low, high)))]).is_err());
     }
 }
+
+#[test]
+fn what_was_believed_stays_beside_a_value_that_a_fit_changes() {
+    let text = [MODEL, "\n[uncertainty]\ntypical = true # a guess\n"].concat();
+    let model = Model::parse(&text, path()).unwrap();
+    let known = model.uncertain[0];
+    let (kept, other) = (known.path, model.uncertain[1].path);
+    let after = keep_given(&text, path(), &[kept], &model).unwrap();
+    let after = set_values(&after, path(), &[(kept, 1.1 * known.given)]).unwrap();
+    assert!(after.contains("typical = true # a guess"), "{after}");
+    let fitted = Model::parse(&after, path()).unwrap();
+    let again = fitted.uncertain(kept).unwrap();
+    assert_eq!(
+        (again.given, again.uncertainty),
+        (known.given, known.uncertainty)
+    );
+    assert!((again.at(kept.get(&fitted).unwrap()).distance).abs() > 0.3);
+    assert_eq!(fitted.uncertain(other), model.uncertain(other));
+    // A second fit changes nothing of what was believed; one that took nothing for known does.
+    let twice = keep_given(&after, path(), &[kept], &fitted).unwrap();
+    assert_eq!(twice, after);
+    let mut unknown = fitted.clone();
+    unknown.forget(&[kept]);
+    let free = keep_given(&after, path(), &[kept], &unknown).unwrap();
+    let free = Model::parse(&free, path()).unwrap();
+    assert_eq!(Some(free.uncertain(kept).unwrap().given), kept.get(&fitted));
+    // A file that states none stays as it is.
+    assert_eq!(keep_given(MODEL, path(), &[kept], &model).unwrap(), MODEL);
+}

@@ -51,7 +51,7 @@ fn free(fit: &Table, model: &Model) -> Result<Vec<ParameterPath>> {
 }
 
 /// An address, and the value that the model has there.
-fn value_at(
+pub(super) fn value_at(
     fit: &Table,
     text: &str,
     span: Option<Range<usize>>,

@@ -11,6 +11,7 @@ mod in_space_tests;
 mod slide_tests;
 #[cfg(test)]
 mod tests;
+pub(super) mod uncertainty;
 
 use super::field::{JOINT_INERTIA, JointField, LinkField, POSITIVE};
 use super::limits::Limits;
@@ -51,7 +52,16 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
     let source = TomlSource { text, file };
     let document = source.document()?;
     let root = Table::root(&source, &document);
-    root.only(&["rig", "link", "joint", "expression", "effect", "fit", "log"])?;
+    root.only(&[
+        "rig",
+        "link",
+        "joint",
+        "expression",
+        "effect",
+        "fit",
+        "uncertainty",
+        "log",
+    ])?;
 
     let rig = root.required_table("rig")?;
     let robot = Robot::read(&rig, file, robot)?;
@@ -101,6 +111,7 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
         laws,
         free: Vec::new(),
         bounds: Vec::new(),
+        uncertain: Vec::new(),
         log,
     };
     if model.slides() && model.angles == Angles::Absolute {
@@ -108,6 +119,13 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
     }
     in_space::check(&root, &model)?;
     (model.free, model.bounds) = fit::read(&root, &model)?;
+    model.uncertain = uncertainty::read(&root, &model)?;
+    // What is uncertain takes part in every fit.
+    for value in &model.uncertain {
+        if !model.free.contains(&value.path) {
+            model.free.push(value.path);
+        }
+    }
     Ok(model)
 }
 

@@ -257,3 +257,58 @@ fn bounds_of_a_fit_narrow_what_is_possible() {
         );
     }
 }
+
+#[test]
+fn what_is_known_beforehand_takes_part_in_every_fit() {
+    let known = |text: &str| parse(&[GOOD, "\n[uncertainty]\n", text].concat());
+    let of = |text: &str, path: &str| {
+        let model = known(text).unwrap();
+        let path: ParameterPath = path.parse().unwrap();
+        assert_eq!(model.free.iter().filter(|free| **free == path).count(), 1);
+        *model.uncertain(path).unwrap()
+    };
+    let exact = parse(GOOD).unwrap();
+    assert!(exact.uncertain.is_empty());
+    let com = of("\"link1.com_m\" = 0.01", "link1.com_m");
+    assert_eq!(com.uncertainty, 0.01);
+    assert_eq!(Some(com.given), com.path.get(&exact));
+    let given = "\"link1.com_m\" = { uncertainty = 0.02, given = 0.07 }";
+    assert_eq!(of(given, "link1.com_m").given, 0.07);
+    // Its own goes before what is typical, and what is free has none.
+    let both = "typical = true\n\"link1.com_m\" = 0.01";
+    assert_eq!(of(both, "link1.com_m").uncertainty, 0.01);
+    assert_eq!(of(both, "link1.mass_kg").uncertainty, 0.05);
+    let model = known("typical = true").unwrap();
+    for free in &exact.free {
+        assert!(model.uncertain(*free).is_none(), "{free}");
+    }
+    for (wrong, why) in [
+        ("\"link1.com_m\" = 2.0", "is impossible"),
+        ("\"link1.com_m\" = 0.0", "is impossible"),
+        ("\"link1.com_m\" = \"some\"", "is a string"),
+        ("\"link1.com_m\" = { given = 0.1 }", "uncertainty"),
+        (
+            "\"link1.com_m\" = { uncertainty = 0.1, about = 2 }",
+            "about",
+        ),
+        ("\"link7.com_m\" = 0.1", "is not in this model"),
+        ("typicl = true", "typicl"),
+        ("typical = 1", "is an integer"),
+    ] {
+        let said = known(wrong).unwrap_err().to_string();
+        assert!(
+            said.contains(why) && said.contains("rig.toml:"),
+            "{wrong}: {said}"
+        );
+    }
+    let free = exact
+        .free
+        .iter()
+        .find(|path| !matches!(path, ParameterPath::Effect { .. }));
+    let both = format!("\"{}\" = 0.1", free.unwrap());
+    let said = known(&both).unwrap_err().to_string();
+    assert!(
+        said.contains("is free, and so it can have no uncertainty"),
+        "{said}"
+    );
+}

@@ -254,3 +254,53 @@ fn an_effect_that_is_not_there_is_refused_for_want_of_better_values() {
     let why = crate::fitting::Unhelpful::NotFound(error).why(&["stribeck@1".to_string()]);
     assert!(why.contains("did not find a better value"), "{why}");
 }
+
+/// A swinging pendulum tells one mixture of its mass, moment of inertia and centre of mass: with
+/// what its owner knows of each, all three are told, and those known best move least.
+#[test]
+fn what_is_known_beforehand_settles_what_the_motions_mix() {
+    let text = [
+        PENDULUM,
+        "[uncertainty]\n\"link1.com_m\" = 0.05\n\"link1.mass_kg\" = 0.01\n\
+         \"link1.inertia_kg_m2\" = 0.2\n",
+    ]
+    .concat();
+    let believed = Model::parse(&text, Path::new("pendulum.toml")).unwrap();
+    let mut truth = pendulum();
+    truth.links[0].com_m = 0.104;
+    let split = Split {
+        training: vec![swing(&truth, 1.2), swing(&truth, 0.7)],
+        held_out: vec![swing(&truth, 1.0)],
+    };
+    let mut free = believed.clone();
+    free.uncertain.clear();
+    let untold = refit(&free, &free.free, &split, None, &|_| {}).unwrap_err();
+    assert_eq!(untold.mixed.len(), 3, "{untold}");
+    let found = refit(&believed, &believed.free, &split, None, &|_| {}).unwrap();
+    assert!(
+        found.error.after_rad < 1.05 * found.error.floor_rad,
+        "{:?}",
+        found.error
+    );
+    let reduced_length_m = |model: &Model| {
+        let link = &model.links[0];
+        link.com_m + link.inertia_kg_m2 / (link.mass_kg * link.com_m)
+    };
+    let ratio = reduced_length_m(&found.model) / reduced_length_m(&truth);
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+    for known in &believed.uncertain {
+        let place = found
+            .free
+            .iter()
+            .position(|path| *path == known.path)
+            .unwrap();
+        let value = &found.values[place];
+        assert!(known.allows(value.value), "{value:?}");
+        // No log tells them apart: each stays nearly as uncertain as it was, but for the one that
+        // makes the mixture.
+        let half = (value.high - value.low) / 2.0 / known.given;
+        let is_told = value.path == "link1.com_m";
+        let share = half / (1.96 * known.uncertainty);
+        assert!((share < 0.4) == is_told, "{value:?}: {share}");
+    }
+}
