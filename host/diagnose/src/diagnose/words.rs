@@ -3,13 +3,18 @@
 //! What to do next comes as command lines in which [`MODEL`], [`LOGS`] and [`HELD_OUT`] stand for
 //! the files.
 
+mod values;
+
+pub use values::change;
+
 use super::findings::{Diagnosis, FittedEffect, Verdict, WrongValue};
 use super::inseparable::{inseparable, same_in_other_words};
 use super::names::{effect_name, joined, listed, value_name};
 use super::one_sided;
 use super::warnings::{on_bound, pairs, shorter_steps, unidentified};
+use values::{size, wrong_values};
 
-use crate::output::number::{measured, percent, short, with_unit};
+use crate::output::number::{measured, percent, short};
 
 /// Stands in [`Diagnosis::next`] for the model file; who knows its name puts it there.
 pub const MODEL: &str = "MODEL";
@@ -85,36 +90,6 @@ fn unrivalled(diagnosis: &Diagnosis) -> String {
     format!("Explained by {first}; what was not tried may explain it as well.")
 }
 
-/// "Your value of the mass of link 1 is wrong: 0.2 -> 0.246 kg (0.244 to 0.248)."
-fn wrong_values(wrong: &[WrongValue]) -> String {
-    let one = |w: &WrongValue| format!("{}: {}", value_name(&w.fitted.path), change(w));
-    let all = |wrong: &[&WrongValue]| {
-        let all: Vec<String> = wrong.iter().map(|w| one(w)).collect();
-        all.join("; ")
-    };
-    let beyond: Vec<&WrongValue> = wrong.iter().filter(|w| !w.within_uncertainty).collect();
-    match beyond.as_slice() {
-        [] => format!(
-            "Nothing is missing, and no value is off by more than its uncertainty; these motions \
-             tell better: {}.",
-            all(&wrong.iter().collect::<Vec<_>>())
-        ),
-        [one] => format!(
-            "Your value of {} is wrong: {}.",
-            value_name(&one.fitted.path),
-            change(one)
-        ),
-        several => format!("Values of the model are wrong: {}.", all(several)),
-    }
-}
-
-/// "0.2 -> 0.246 kg (0.244 to 0.248)".
-pub fn change(wrong: &WrongValue) -> String {
-    let fitted = &wrong.fitted;
-    let to = measured(fitted.value, fitted.low, fitted.high, &fitted.unit);
-    format!("{} -> {to}", short(wrong.given))
-}
-
 /// "96 % of the squared error" that what was found removes; nothing where it removes none. Of
 /// effects what refitted values alone remove is not their own: "of what refitted values leave of
 /// it".
@@ -184,20 +159,6 @@ fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
         }
         ([one], _) => format!("{} is missing", effect_name(one)),
         (several, _) => format!("{} are missing", joined(several)),
-    }
-}
-
-/// "twice", "0.85 times"; of a value that is 0 in the file, or changes its sign, what it is
-/// instead: "0.02 kg, not".
-fn size(wrong: &WrongValue) -> String {
-    let (ratio, fitted) = (wrong.fitted.value / wrong.given, &wrong.fitted);
-    match ratio {
-        ratio if !(ratio > 0.0 && ratio.is_finite()) => {
-            format!("{}, not", with_unit(&short(fitted.value), &fitted.unit))
-        }
-        ratio if (1.95..2.05).contains(&ratio) => "twice".to_string(),
-        ratio if (0.49..0.51).contains(&ratio) => "half".to_string(),
-        ratio => format!("{} times", short(ratio)),
     }
 }
 

@@ -61,8 +61,17 @@ pub struct LinkPlan {
 pub fn new_model_toml(plan: &ModelPlan) -> Result<String> {
     let head =
         "# Written from a form. `handstand compare` shows how far it is from a log, and where.\n\n";
-    model_toml(plan, head, &log_table(plan))
+    model_toml(plan, head, &[UNCERTAINTY, &log_table(plan)].concat())
 }
+
+/// The section of a file whose figures were measured or computed.
+pub(super) const UNCERTAINTY: &str = "
+# How well masses, moments of inertia and motor figures are known: as such values usually are. Fits
+# and diagnoses move them within that. Of one that was weighed, to a hundredth:
+# \"link1.mass_kg\" = 0.01
+[uncertainty]
+typical = true
+";
 
 /// The model file of a plan between comments at its head and what follows the joints: effects,
 /// `[fit]` and `[log]`.

@@ -17,7 +17,10 @@ const BELONGS: f64 = 0.1;
 pub(super) fn untold_mixture(fit: &Fit) -> Vec<ParameterPath> {
     let places = mixed(&fit.information().matrix).into_iter();
     let mixed: Vec<ParameterPath> = places.map(|place| fit.free[place]).collect();
-    if mixed.iter().any(|path| fit.model.uncertain(*path).is_some()) {
+    if mixed
+        .iter()
+        .any(|path| fit.model.uncertain(*path).is_some())
+    {
         return Vec::new();
     }
     mixed

@@ -144,7 +144,7 @@ fn a_partial_explanation_is_not_to_be_taken_for_the_cause() {
     );
 }
 
-fn wrong(path: &str, given: f64, to: f64) -> WrongValue {
+pub(super) fn wrong(path: &str, given: f64, to: f64) -> WrongValue {
     WrongValue {
         given,
         free: path.starts_with("viscous"),

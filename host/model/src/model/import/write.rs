@@ -9,7 +9,7 @@ use super::tree::{Remark, TreeDrive};
 use crate::effects::{Axis, Parameter, named};
 use crate::error::{Error, Place, Result};
 use crate::model::field::POSITIVE;
-use crate::model::new_model::{LinkPlan, ModelPlan, model_toml};
+use crate::model::new_model::{LinkPlan, ModelPlan, UNCERTAINTY, model_toml};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -64,7 +64,7 @@ pub(super) fn toml(
     let text = model_toml(
         &plan,
         &(head + "\n"),
-        &format!("{effects}{}", log_table(&chain.links)),
+        &format!("{effects}{UNCERTAINTY}{}", log_table(&chain.links)),
     );
     // The model's text is not there for anyone to look into.
     text.map_err(|error| match &error {
