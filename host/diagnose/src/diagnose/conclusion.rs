@@ -40,10 +40,13 @@ pub(super) fn conclude(evidence: &VerdictEvidence, judging: &mut Judging) -> Dia
     let step_s = chosen.fit().model.step_s;
     let (base, added) = values.split_at(values.len() - chosen.added_values());
     let mut collinear = Vec::new();
+    // Of two that are known beforehand none has to be told by these motions.
+    let free = &chosen.fit().free;
+    let is_known = |place: usize| chosen.fit().model.uncertain(free[place]).is_some();
     for (a, value) in values.iter().enumerate().filter(|_| correlation.is_some()) {
         for (b, other) in values[..a].iter().enumerate() {
             let r = correlation.as_ref().map_or(0.0, |r| r[(a, b)]);
-            if r.abs() > COLLINEAR {
+            if r.abs() > COLLINEAR && !(is_known(a) && is_known(b)) {
                 collinear.push((other.path.clone(), value.path.clone(), r));
             }
         }
