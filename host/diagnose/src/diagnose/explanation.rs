@@ -264,6 +264,7 @@ impl<'a> VerdictEvidence<'a> {
             per_motion_reduction: self.per_motion_reduction.unwrap_or(0.0),
             worst_fold: most_raised(&self.folds),
             is_examined: self.left_out.is_empty(),
+            spans_bounds: kind == Kind::Effects && chosen.spans_bounds(&evaluator.training),
             placebo_ranks: kind == Kind::Effects && self.placebo_ranks(),
             rivals,
         }

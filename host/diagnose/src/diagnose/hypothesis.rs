@@ -332,6 +332,20 @@ impl Hypothesis {
         self.evaluation.as_ref().map_or(&self.search, |e| &e.fit)
     }
 
+    /// Whether the interval of a value of an added effect reaches from bound to bound.
+    pub fn spans_bounds(&self, training: &FitProblem) -> bool {
+        let fit = self.fit();
+        let Some((intervals, _)) = intervals(fit, training) else {
+            return false;
+        };
+        let first = intervals.len() - self.added_values();
+        let mut own = fit.free[first..].iter().zip(&intervals[first..]);
+        own.any(|(path, interval)| {
+            let (low, high) = path.bounds(&fit.model);
+            low.is_finite() && high.is_finite() && interval.low <= low && interval.high >= high
+        })
+    }
+
     /// Whether an added effect has a value at the edge of the possible: it vanishes there, or
     /// stands in for another.
     pub fn rests_on_bound(&self) -> bool {

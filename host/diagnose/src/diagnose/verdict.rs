@@ -37,6 +37,9 @@ pub(super) struct Signs {
     /// Largest factor by which it raises the error of motions held out in turn; 1 where it raises
     /// none.
     pub worst_fold: f64,
+    /// Whether an effect has a value of which the motions say nothing: its interval reaches from
+    /// bound to bound.
+    pub spans_bounds: bool,
     /// Whether a placebo regressor gains about as much as the effects.
     pub placebo_ranks: bool,
     /// Whether other explanations do as well.
@@ -103,6 +106,7 @@ impl Signs {
                     || self.leaves_much()
                     || self.values_vary()
                     || self.worst_fold > MOST_RAISED
+                    || self.spans_bounds
             }
             // Motions that were fitted show too little of what is left; what they show is there.
             (_, false) => self.leaves_much(),

@@ -13,6 +13,7 @@ const FOUND: Signs = Signs {
     free_form_low: 0.0,
     per_motion_reduction: 0.0,
     worst_fold: 1.0,
+    spans_bounds: false,
     placebo_ranks: false,
     rivals: false,
     is_examined: true,
@@ -234,4 +235,20 @@ fn what_was_not_examined_is_not_claimed() {
         ..FOUND
     };
     assert_eq!(unexamined(noise).verdict(), Verdict::Nominal);
+}
+
+/// A flexible effect that takes on what another leaves has a value that may be anything.
+#[test]
+fn an_effect_with_a_value_that_may_be_anything_is_named_only_where_nothing_is_left() {
+    let spans = |signs| Signs {
+        spans_bounds: true,
+        ..signs
+    };
+    assert_eq!(spans(ABOVE).verdict(), Verdict::Unexplained);
+    assert_eq!(spans(FOUND).verdict(), Verdict::Named);
+    let fitted = Signs {
+        held_out: false,
+        ..spans(ABOVE)
+    };
+    assert_eq!(fitted.verdict(), Verdict::Named);
 }
