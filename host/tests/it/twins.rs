@@ -198,6 +198,17 @@ fn weaker_drives_and_heavier_links_are_not_told_apart() {
         "{:?}",
         found.summary
     );
+    // The file takes for exact what would part them; one that says how exact is not told to.
+    let advises = |found: &Diagnosis| {
+        found
+            .next
+            .iter()
+            .any(|line| line.contains("typical = true"))
+    };
+    assert!(advises(&found), "{:?}", found.next);
+    let weighed = "[uncertainty]\n\"link1.mass_kg\" = 0.01\n\"link2.mass_kg\" = 0.01\n";
+    let stated = believed(weighed, hidden, &options);
+    assert!(!advises(&stated), "{:?}", stated.next);
 }
 
 #[test]

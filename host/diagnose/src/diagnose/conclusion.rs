@@ -5,7 +5,7 @@ use super::error_budget::error_budget;
 use super::evaluator::Evaluator;
 use super::explanation::{Explanation, VerdictEvidence};
 use super::findings::{
-    Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, SearchEnded, WrongValue,
+    Alternative, Diagnosis, FittedEffect, MotionError, RuledOut, SearchEnded, Verdict, WrongValue,
 };
 use super::hypothesis::Hypothesis;
 use super::judging::Judging;
@@ -17,7 +17,7 @@ use super::words;
 use crate::fitting::{
     ErrorReduction, FitProblem, FittedValue, MotionWindow, fitted_values, locally_fitted_values,
 };
-use crate::model::MeasuredSignal;
+use crate::model::{MeasuredSignal, ParameterPath};
 use crate::output::number::{percent, short};
 
 /// Correlation from which two values are hardly told apart.
@@ -78,6 +78,9 @@ pub(super) fn conclude(evidence: &VerdictEvidence, judging: &mut Judging) -> Dia
     diagnosis.warnings.extend(scale);
     diagnosis.left_out.extend(judging.take_left_out());
     words::complete(&mut diagnosis);
+    diagnosis
+        .next
+        .extend(state_uncertainty(&diagnosis, evaluator));
     // What decides is said at once.
     let at = diagnosis.summary.len().min(1);
     let decides = values_vary(evidence).into_iter().chain(ended(&diagnosis));
@@ -85,6 +88,23 @@ pub(super) fn conclude(evidence: &VerdictEvidence, judging: &mut Judging) -> Dia
         .summary
         .splice(at..at, decides.collect::<Vec<_>>());
     diagnosis
+}
+
+/// What to do where the file takes its values for exact, and no one thing explains the motions. Of
+/// a robot in space so many values more would take hours.
+fn state_uncertainty(diagnosis: &Diagnosis, evaluator: &Evaluator) -> Option<String> {
+    let is_open = matches!(diagnosis.verdict, Verdict::Ambiguous | Verdict::Unexplained);
+    let is_exact = evaluator.start.uncertain.is_empty() && evaluator.start.robot.is_none();
+    let typical = evaluator.start.typically_uncertain();
+    let is_told = |path: &ParameterPath| {
+        evaluator.start.free.contains(path) || evaluator.known.contains(path)
+    };
+    let is_assumed = typical.iter().any(|value| !is_told(&value.path));
+    (is_open && is_exact && is_assumed).then(|| {
+        "The file takes masses, moments of inertia and motor figures for exact. Where they are not, \
+         say so and try again: `[uncertainty]` and below it `typical = true` at its end."
+            .to_string()
+    })
 }
 
 /// That the search ended early, and what was left out.
