@@ -121,7 +121,7 @@ fn measure(name: &str, words: &[OsString]) -> ExitCode {
         "--release",
         "--quiet",
         "--package",
-        "handstand-tests",
+        "handstand-measure",
     ];
     let mut cargo = cargo(&run);
     cargo.args(["--bin", "measure", "--", name]).args(words);
