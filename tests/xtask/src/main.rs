@@ -49,6 +49,8 @@ enum Chore {
     BenchRead(Words),
     /// Kill recorders, and read what is left of their files
     BenchRecord(Words),
+    /// Measure how weak an effect may be and still be named
+    Detection(Words),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(Words),
     /// Measure other programs and the library on the same tasks
@@ -99,6 +101,7 @@ fn main() -> ExitCode {
         Chore::BenchLab(words) => ("bench-lab", words),
         Chore::BenchRead(words) => ("bench-read", words),
         Chore::BenchRecord(words) => ("bench-record", words),
+        Chore::Detection(words) => ("detection", words),
         Chore::Hidden(words) => ("hidden", words),
         Chore::Peers(words) => ("peers", words),
         Chore::Next(words) => ("next", words),
