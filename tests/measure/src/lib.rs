@@ -9,6 +9,7 @@ pub mod hidden;
 #[cfg(unix)]
 pub mod kills;
 pub mod measured;
+pub mod pages;
 pub mod peers;
 pub mod reading;
 pub mod refit;

@@ -53,6 +53,8 @@ enum Chore {
     Detection(Words),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(Words),
+    /// Renew the pages of docs/measured that take minutes, and name the commands of the others
+    Measured(Words),
     /// Measure other programs and the library on the same tasks
     Peers(Words),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
@@ -103,6 +105,7 @@ fn main() -> ExitCode {
         Chore::BenchRecord(words) => ("bench-record", words),
         Chore::Detection(words) => ("detection", words),
         Chore::Hidden(words) => ("hidden", words),
+        Chore::Measured(words) => ("measured", words),
         Chore::Peers(words) => ("peers", words),
         Chore::Next(words) => ("next", words),
         Chore::FirstHour(words) => ("first-hour", words),

@@ -8,6 +8,7 @@ mod bench_record;
 mod detection;
 mod first_hour;
 mod hidden;
+mod measured;
 mod next;
 mod page;
 mod peers;
@@ -41,6 +42,8 @@ enum Chore {
     Hidden(hidden::Args),
     /// Measure how weak an effect may be and still be named
     Detection(detection::Args),
+    /// Renew the pages of docs/measured that take minutes, and name the commands of the others
+    Measured(measured::Args),
     /// Measure whether a limited time gives the verdict of the whole search
     Within(within::Args),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
@@ -78,6 +81,7 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Detection(args) => detection::run(args),
+            Chore::Measured(args) => measured::run(args),
             Chore::Within(args) => within::run(args),
             Chore::Next(args) => next::run(args),
             Chore::FirstHour(args) => first_hour::run(args),
