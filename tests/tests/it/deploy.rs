@@ -6,9 +6,9 @@
 mod boot_loader;
 
 use boot_loader::{Trouble, start_then};
+use handstand_measure::bench::serve;
+use handstand_measure::firmware::find_built;
 use handstand_simavr::ElfCm5;
-use handstand_tests::bench::serve;
-use handstand_tests::firmware::find_built;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -2,7 +2,7 @@
 //! by the lab's pages.
 
 use super::program;
-use handstand_tests::first_hour::{DrawnRig, DriveKind, End, Hidden, Walk, walk, walk_in_lab};
+use handstand_measure::first_hour::{DrawnRig, DriveKind, End, Hidden, Walk, walk, walk_in_lab};
 use std::time::Duration;
 
 fn walked(seed: u64) -> (Hidden, End) {

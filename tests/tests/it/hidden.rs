@@ -4,7 +4,7 @@ use handstand::Model;
 use handstand::compare::compare;
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, read};
-use handstand_tests::hidden::{Answer, Case, Family, Outcome, Plan, Truth, try_all, try_case};
+use handstand_measure::hidden::{Answer, Case, Family, Outcome, Plan, Truth, try_all, try_case};
 
 fn case(family: Family, hidden: &[&'static str], seed: u64) -> Case {
     Case {
@@ -104,7 +104,7 @@ fn a_plan_has_every_case_once_whatever_its_truth() {
     for truth in [Truth::Own, Truth::Mujoco, Truth::Robot] {
         let plan = Plan {
             truth,
-            families: handstand_tests::hidden::FAMILIES.to_vec(),
+            families: handstand_measure::hidden::FAMILIES.to_vec(),
             effects: Vec::new(),
             seeds: 2,
             nominal: 3,
@@ -121,7 +121,7 @@ fn a_plan_has_every_case_once_whatever_its_truth() {
                 .filter(move |case| case.family == family)
                 .count()
         };
-        let singles = 2 * handstand_tests::hidden::kinds(truth).len();
+        let singles = 2 * handstand_measure::hidden::kinds(truth).len();
         if truth == Truth::Robot {
             assert_eq!((sizes(Family::Robot), sizes(Family::NothingRobot)), (12, 2));
             assert_eq!((cases.len(), singles), (14, 12));

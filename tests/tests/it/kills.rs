@@ -1,7 +1,7 @@
 //! `record` survives `kill -9`: a sample of what `cargo xtask bench-record` does a thousand times.
 
 use super::program;
-use handstand_tests::kills::kill_recorders;
+use handstand_measure::kills::kill_recorders;
 
 #[test]
 fn a_killed_recorder_leaves_a_file_that_lacks_a_second_at_most() {

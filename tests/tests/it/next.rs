@@ -1,7 +1,7 @@
 //! A sample of `cargo xtask next`: what a proposed experiment settles on a true arm.
 
 use handstand::diagnose::Verdict;
-use handstand_tests::experiment::{ExperimentCase, try_experiment};
+use handstand_measure::experiment::{ExperimentCase, try_experiment};
 
 /// The case tried: what was proposed, and that the first diagnosis was open and the last is not.
 fn settled(kind: &'static str, seed: u64) -> String {

@@ -1,7 +1,7 @@
 //! A sample of `cargo xtask spoiled`: the right remedy on spoiled logs, silence on good ones.
 
 use handstand::challenge::Motions;
-use handstand_tests::spoiled::{Answer, Spoiling, bundled, judge, simulated, unspoiled};
+use handstand_measure::spoiled::{Answer, Spoiling, bundled, judge, simulated, unspoiled};
 
 #[test]
 fn a_spoiled_arm_gets_the_right_remedy() {

@@ -1,8 +1,8 @@
 //! A sample of `cargo xtask verdicts`: what `gains` says of a robot, against a simulation that
 //! shares no equation and no step with the library's.
 
-use handstand_tests::verdicts::judge;
-use handstand_tests::verdicts::robot::{NonIdeality, Robot};
+use handstand_measure::verdicts::judge;
+use handstand_measure::verdicts::robot::{NonIdeality, Robot};
 
 /// The paper's weights hold the robot with a late drive that they know of, and not the one whose
 /// shoulder has a dead zone; both simulations say so.

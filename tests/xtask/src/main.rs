@@ -49,8 +49,12 @@ enum Chore {
     BenchRead(Words),
     /// Kill recorders, and read what is left of their files
     BenchRecord(Words),
+    /// Measure how weak an effect may be and still be named
+    Detection(Words),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(Words),
+    /// Renew the pages of docs/measured that take minutes, and name the commands of the others
+    Measured(Words),
     /// Measure other programs and the library on the same tasks
     Peers(Words),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
@@ -99,7 +103,9 @@ fn main() -> ExitCode {
         Chore::BenchLab(words) => ("bench-lab", words),
         Chore::BenchRead(words) => ("bench-read", words),
         Chore::BenchRecord(words) => ("bench-record", words),
+        Chore::Detection(words) => ("detection", words),
         Chore::Hidden(words) => ("hidden", words),
+        Chore::Measured(words) => ("measured", words),
         Chore::Peers(words) => ("peers", words),
         Chore::Next(words) => ("next", words),
         Chore::FirstHour(words) => ("first-hour", words),
@@ -121,7 +127,7 @@ fn measure(name: &str, words: &[OsString]) -> ExitCode {
         "--release",
         "--quiet",
         "--package",
-        "handstand-tests",
+        "handstand-measure",
     ];
     let mut cargo = cargo(&run);
     cargo.args(["--bin", "measure", "--", name]).args(words);

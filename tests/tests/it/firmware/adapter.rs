@@ -1,11 +1,11 @@
 //! The plain adapter.
 
 use handstand_cm5_sim::{STARTED_MS, XServo};
+use handstand_measure::bench::*;
 use handstand_shared::control_table::models::ServoModel;
 use handstand_shared::control_table::x::GOAL_POSITION;
 use handstand_shared::dynamixel::{ErrorBits, Packet};
 use handstand_shared::dynamixel2 as two;
-use handstand_tests::bench::*;
 
 /// Existing tools see a plain adapter: their packets go through, and so do the answers.
 pub fn is_a_plain_adapter(bench: &mut impl SimulatedCm5) {

@@ -1,8 +1,8 @@
 //! What arming needs.
 
 use super::{arm_with, greet, refused};
+use handstand_measure::bench::*;
 use handstand_shared::message::*;
-use handstand_tests::bench::*;
 
 #[test]
 fn arming_needs_a_greeting_a_token_a_state_and_a_supply() {

@@ -1,6 +1,7 @@
 //! Balancing on board.
 
 use super::{arm_with, greet, refused};
+use handstand_measure::bench::*;
 use handstand_shared::control_table::MOVING_SPEED;
 use handstand_shared::gains::GainTable;
 use handstand_shared::law::control;
@@ -8,7 +9,6 @@ use handstand_shared::message::*;
 use handstand_shared::plan::{Law, Plan};
 use handstand_shared::raw::Signed;
 use handstand_shared::velocity::Velocity;
-use handstand_tests::bench::*;
 
 /// A law on plain states: the paper's regulator, rounded to the steps the firmware reads in.
 pub fn state_plan() -> Plan {

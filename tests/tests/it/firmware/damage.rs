@@ -1,6 +1,6 @@
 //! Power cuts while gains are written, and damaged frames.
 
-use handstand_tests::bench::*;
+use handstand_measure::bench::*;
 
 #[test]
 fn a_power_cut_leaves_the_old_or_the_new_gains() {

@@ -2,11 +2,11 @@
 
 use super::condition;
 use handstand_cm5_sim::{Bus, Servo};
+use handstand_measure::bench::*;
 use handstand_shared::control_table::{MOVING_SPEED, TORQUE_ENABLE};
 use handstand_shared::dynamixel::ErrorBits;
 use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_tests::bench::*;
 
 /// How a servo gives up.
 #[derive(Debug, Clone, Copy)]

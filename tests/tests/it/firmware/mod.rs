@@ -11,8 +11,8 @@ mod panel;
 mod safety;
 mod stream;
 
+use handstand_measure::bench::*;
 use handstand_shared::message::*;
-use handstand_tests::bench::*;
 
 /// What it says against a command; nothing if it obeys.
 fn refused(rig: &mut VirtualCm5, command: Command) -> Option<Refusal> {

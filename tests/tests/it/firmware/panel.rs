@@ -1,8 +1,8 @@
 //! Buttons.
 
 use super::condition;
+use handstand_measure::bench::*;
 use handstand_shared::message::*;
-use handstand_tests::bench::*;
 
 #[test]
 fn any_button_stops_an_armed_robot() {

@@ -1,6 +1,6 @@
 //! Torque goes off: at the start, and when the link falls silent.
 
-use handstand_tests::bench::*;
+use handstand_measure::bench::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 

@@ -1,10 +1,10 @@
 //! Streaming: 18 servos at 100 Hz, and answers that fail.
 
 use super::greet;
+use handstand_measure::bench::*;
 use handstand_shared::control_table::GOAL_POSITION;
 use handstand_shared::message::*;
 use handstand_shared::packed::{Positions, SERVOS};
-use handstand_tests::bench::*;
 
 /// Streams for three seconds: every cycle of 10 ms, nothing lost, the servos where they were sent.
 pub fn streams(bench: &mut impl SimulatedCm5) {

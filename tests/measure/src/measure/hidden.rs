@@ -1,0 +1,248 @@
+//! `cargo xtask hidden`: how often hidden effects are named, missed, or invented, against targets.
+//!
+//! Families of cases: one effect at the bench arm, at the robot hanging, at the robot hanging and
+//! balancing; two and three effects; none; one that the library lacks. Every rig has motions to
+//! learn from and some held out. The truth is the library's own independent equations, with
+//! `--truth mujoco` MuJoCo's, with `--truth robot` the virtual robot recorded through the firmware.
+//! A line goes to stderr as each diagnosis ends, whichever ends first; the tables go to stdout.
+//! Fails when a target is missed or a case cannot be made.
+//!
+//! With `--outcomes FILE` each outcome is appended to a file of JSON lines, and what it holds is
+//! not tried again: a run that was stopped goes on, and the files of shards, put together, make one
+//! table (`--tabulate`).
+
+use super::page::{Page, print};
+use clap::builder::PossibleValuesParser;
+use handstand::challenge::{KINDS, Motions};
+use handstand::study::Shard;
+use handstand_measure::hidden::{
+    FAMILIES, Family, OUTSIDE, Outcome, Plan, Tally, Truth, install_mujoco, line, misses, tables,
+    try_all,
+};
+use handstand_measure::measured::{Measured, Provenance};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+use std::collections::BTreeSet;
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Measure how often hidden effects are named, missed and invented.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Who makes the logs
+    #[arg(long, value_enum, default_value = "own")]
+    truth: Truth,
+    /// Only these families
+    #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(names()))]
+    families: Vec<String>,
+    /// Rigs per effect; of pairs and triples ten sets per seed
+    #[arg(long, default_value_t = 10)]
+    seeds: u64,
+    /// Arms that hide nothing
+    #[arg(long, default_value_t = 200)]
+    nominal: u64,
+    /// First seed, from 1
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    seed0: u64,
+    /// Hide only these, where one is hidden
+    #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(hideable()))]
+    effects: Vec<String>,
+    /// Try only this share of the cases: `2/5` is the second of five
+    #[arg(long, default_value = "1/1", value_name = "I/N")]
+    shard: Shard,
+    /// Diagnoses at a time; one per core without it
+    #[arg(long)]
+    jobs: Option<usize>,
+    /// Append every outcome to this file of JSON lines, and leave out what it holds
+    #[arg(long, value_name = "FILE")]
+    outcomes: Option<PathBuf>,
+    /// Try nothing: tabulate all that the file of outcomes holds, its number of rigs by family
+    #[arg(long, requires = "outcomes")]
+    tabulate: bool,
+    /// Keep every rig's model, true model and logs in this folder
+    #[arg(long, value_name = "DIR")]
+    rigs: Option<PathBuf>,
+    /// Print every outcome and the figures as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    page: Page,
+}
+
+fn names() -> Vec<&'static str> {
+    FAMILIES.into_iter().map(Family::name).collect()
+}
+
+fn hideable() -> Vec<&'static str> {
+    KINDS.into_iter().chain(OUTSIDE).collect()
+}
+
+/// Whether every target is met.
+pub fn run(args: &Args) -> bool {
+    match tried(args) {
+        Ok(met) => met,
+        Err(why) => {
+            eprintln!("{why}");
+            false
+        }
+    }
+}
+
+fn tried(args: &Args) -> Result<bool, String> {
+    if args.truth == Truth::Mujoco && !install_mujoco() {
+        return Err("MuJoCo cannot be installed".to_string());
+    }
+    let families = args.families.iter().filter_map(|name| Family::named(name));
+    let mut families: Vec<Family> = families.collect();
+    if families.is_empty() {
+        families = FAMILIES.to_vec();
+    }
+    let plan = Plan {
+        truth: args.truth,
+        families,
+        effects: args.effects.clone(),
+        seeds: args.seeds,
+        nominal: args.nominal,
+        seed0: args.seed0,
+    };
+    let mut old = args.outcomes.as_deref().map_or(Ok(Vec::new()), outcomes)?;
+    let mut cases = plan.cases();
+    let mut number = 0;
+    cases.retain(|_| {
+        number += 1;
+        args.shard.holds(number - 1)
+    });
+    if args.tabulate {
+        old.retain(|outcome| outcome.truth == args.truth);
+        cases.clear();
+    } else {
+        old.retain(|outcome| cases.iter().any(|case| outcome.is_of(case)));
+        cases.retain(|case| !old.iter().any(|outcome| outcome.is_of(case)));
+    }
+
+    let mut file = args.outcomes.as_deref().map(appended).transpose()?;
+    let journal = std::sync::Mutex::new(file.as_mut());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let bar = ProgressBar::new(cases.len() as u64).with_style(style());
+    let jobs = args.jobs.unwrap_or(threads);
+    let rigs = args.rigs.as_deref();
+    let (new, failed) = try_all(&cases, rigs, [jobs, threads], &|outcome| {
+        bar.suspend(|| eprintln!("{}", line(outcome)));
+        bar.inc(1);
+        if let (Ok(mut journal), Ok(text)) = (journal.lock(), serde_json::to_string(outcome))
+            && let Some(Err(why)) = journal.as_mut().map(|file| writeln!(file, "{text}"))
+        {
+            bar.suspend(|| eprintln!("the outcome is not kept: {why}"));
+        }
+    });
+    bar.finish_and_clear();
+    for (case, why) in &failed {
+        let (family, kinds) = (case.family.name(), case.hidden.join(" + "));
+        eprintln!("{family}, seed {}, {kinds}: {why}", case.seed);
+    }
+    old.extend(new);
+    let tally = Tally::of(&old);
+    let json = (args.json).then(|| json!({ "tally": tally, "outcomes": old }));
+    print(json, &measured(&old));
+    let written = PAGES.iter().all(|page| {
+        let own: Vec<Outcome> = old.iter().filter(|o| page.holds(o)).cloned().collect();
+        let keep = |page: &RigPage| {
+            let (from, measured) = (provenance(&own), measured(&own));
+            args.page.keep(&from, &measured, page.name, page.title)
+        };
+        own.is_empty() || keep(page)
+    });
+    Ok(tally.is_met() && failed.is_empty() && written)
+}
+
+fn measured(outcomes: &[Outcome]) -> Measured {
+    tables(&Tally::of(outcomes)).lines(misses(outcomes))
+}
+
+/// This run, with the versions that the outcomes are of.
+fn provenance(outcomes: &[Outcome]) -> Provenance {
+    let versions = outcomes.iter().map(|outcome| outcome.version.as_str());
+    let versions: BTreeSet<&str> = versions.collect();
+    let versions: Vec<&str> = versions.into_iter().collect();
+    Provenance {
+        version: versions.join(", "),
+        ..Provenance::here()
+    }
+}
+
+/// A page of docs/measured: the outcomes of one truth at one rig.
+struct RigPage {
+    truth: Truth,
+    /// At three links, not at one arm; where the truth has both.
+    is_chain: bool,
+    name: &'static str,
+    title: &'static str,
+}
+
+const PAGES: [RigPage; 5] = [
+    RigPage {
+        truth: Truth::Own,
+        is_chain: false,
+        name: "hidden",
+        title: "Hidden effects named, missed and invented: one arm",
+    },
+    RigPage {
+        truth: Truth::Own,
+        is_chain: true,
+        name: "hidden-chain",
+        title: "Hidden effects named, missed and invented: three links",
+    },
+    RigPage {
+        truth: Truth::Mujoco,
+        is_chain: false,
+        name: "hidden-mujoco",
+        title: "Hidden effects named, missed and invented: MuJoCo's truth",
+    },
+    RigPage {
+        truth: Truth::Mujoco,
+        is_chain: true,
+        name: "hidden-chain-mujoco",
+        title: "Hidden effects named, missed and invented: MuJoCo's truth, three links",
+    },
+    RigPage {
+        truth: Truth::Robot,
+        is_chain: false,
+        name: "hidden-robot",
+        title: "Hidden effects named, missed and invented: the virtual robot's own recordings",
+    },
+];
+
+impl RigPage {
+    fn holds(&self, outcome: &Outcome) -> bool {
+        let is_chain = outcome.family.motions() != Motions::Arm;
+        (outcome.truth, is_chain) == (self.truth, self.is_chain)
+    }
+}
+
+/// The outcomes of a file of JSON lines; none where there is no file yet.
+fn outcomes(path: &Path) -> Result<Vec<Outcome>, String> {
+    let said = |why: String| format!("{}: {why}", path.display());
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(said(error.to_string())),
+    };
+    let lines = text.lines().enumerate();
+    lines
+        .map(|(k, line)| {
+            serde_json::from_str(line)
+                .map_err(|why| said(format!("line {} is no outcome: {why}", k + 1)))
+        })
+        .collect()
+}
+
+fn appended(path: &Path) -> Result<std::fs::File, String> {
+    let file = OpenOptions::new().append(true).create(true).open(path);
+    file.map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn style() -> ProgressStyle {
+    ProgressStyle::with_template("{bar:30} {pos} of {len}, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+}
