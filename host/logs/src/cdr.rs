@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_that_no_message_bears_are_refused_and_reserve_nothing() {
+    fn damaged_lengths_are_refused_and_reserve_nothing() {
         let begin = [
             &HEADER[..],
             &[2, 0, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0],

@@ -112,12 +112,12 @@ impl<'a> RowReader<'a> {
 
     /// Fills `row` from one row of the table, counted from 0.
     ///
-    /// What is not a number, or says `nan`, `NA`, `NULL` or the like, is a gap: that quantity is not
-    /// a number in this row.
+    /// What is not a number, or says `nan`, `NA`, `NULL` or the like, is a gap: that quantity is
+    /// not a number in this row.
     ///
     /// # Errors
-    /// Too few or too many fields, fields that hold something else than a finite number, a flag that
-    /// is neither 0 nor 1, and a row without a time.
+    /// Too few or too many fields, fields that hold something else than a finite number, a flag
+    /// that is neither 0 nor 1, and a row without a time.
     pub fn fill(&self, index: usize, row: &mut LogRow) -> Result<()> {
         row.line = self.table.line(index);
         if let Some((field, reason)) = self.table.fault(index) {

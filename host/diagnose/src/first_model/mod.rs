@@ -37,8 +37,8 @@ const SHORT_S: f64 = 0.5;
 /// Samples that starts are compared on, and that the best is fitted to.
 const FEW: usize = 2000;
 const SAMPLES: usize = 6000;
-/// Joints whose values are estimated at once: what a fit of all takes grows with the fourth power of
-/// their number, and of ten or more with hours.
+/// Joints whose values are estimated at once: what a fit of all takes grows with the fourth power
+/// of their number, to hours for ten and more.
 const MOST_JOINTS: usize = 8;
 /// Iterations that tell a promising start from a hopeless one.
 const SCREENING: usize = 6;
