@@ -16,6 +16,7 @@ pub use handstand_model::{dynamics, effects, error, model, motion, output};
 pub use handstand_paper as paper;
 pub use handstand_report as report;
 pub use handstand_report::plot;
+#[cfg(feature = "robot")]
 pub use handstand_robot::deploy;
 #[cfg(feature = "virtual-cm5")]
 pub use handstand_robot::robot_demo;

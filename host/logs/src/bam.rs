@@ -4,17 +4,14 @@
 //! `entries`, each with `timestamp` (s), `position`, `goal_position` (rad), and often `speed`,
 //! `input_volts`, `torque_enable`.
 
-use super::foreign::{HEAD, foreign};
 use super::format::LogFormat;
 use super::read::LEAST_ROWS;
 use super::reading_limit::LARGEST_READING;
 use super::reason::LogReason;
 use super::request::LogRequest;
-use super::row::LogRow;
-use super::visit::FileFacts;
+use super::table::{LogTable, TableFile};
 use crate::error::{Error, Place, Result};
-use crate::model::LogColumns;
-use crate::motion::{Motion, MotionSource};
+use crate::model::{Column, Dimension, JointColumns, LogColumns, RateSensor};
 use crate::output::number::hex;
 use crate::output::shortened;
 use serde_json::Value;
@@ -24,6 +21,15 @@ use std::path::Path;
 /// How far a bench's mass, moment and length may lie off the model's, as a share: a model's link
 /// counts the arm and what was fitted, the bench its weight.
 const TOLERANCE: f64 = 0.25;
+
+/// Keys of an entry, and what the table calls the weight.
+const TIME: &str = "timestamp";
+const POSITION: &str = "position";
+const GOAL: &str = "goal_position";
+const SPEED: &str = "speed";
+const SUPPLY: &str = "input_volts";
+const TORQUE_ON: &str = "torque_enable";
+const PAYLOAD: &str = "payload_kg";
 
 /// What the logs of one rig have in common.
 #[derive(Debug, Default)]
@@ -54,23 +60,24 @@ impl BenchFigures {
     }
 }
 
-/// Hands the entries asked for over one by one, as rows, with their number counted from 0.
+/// Reads the entries asked for, and the columns that say what they are.
 ///
 /// Where `columns` name a payload, each log's own weight is it, and the model's one link is the rod;
 /// else the link is both. `kp` must be that of the logs before. Speed, supply and `torque_enable`
 /// are taken where every entry has them. A row's line is its entry, counted from 1.
 ///
 /// # Errors
-/// What the visitor returns. Broken JSON with its line and column; a missing or wrong value with
-/// its entry and key; time that does not increase; fewer than [`LEAST_ROWS`] entries; mass, length
-/// or gain of another rig; a model of several joints.
-pub(super) fn visit(
+/// Broken JSON with its line and column; a missing or wrong value with its entry and key; time that
+/// does not increase; fewer than [`LEAST_ROWS`] entries; mass, length or gain of another rig; a
+/// model of several joints.
+pub(super) fn read(
     request: &LogRequest,
     columns: &LogColumns,
     bench: &mut BamBench,
-    visitor: &mut dyn FnMut(usize, Result<&LogRow>) -> Result<()>,
-) -> Result<FileFacts> {
-    let (motion, _) = read_of(request, Some(columns), bench)?;
+) -> Result<(LogTable, LogColumns)> {
+    let bytes = LogTable::bytes(&request.path, LogFormat::Bam)?;
+    let mut table = read_of(&bytes, request, Some(columns), bench)?;
+    table.sha256 = hex(Sha256::digest(&bytes));
     let joints = columns.joints.len();
     if joints != 1 {
         return Err(Error::data(
@@ -79,36 +86,62 @@ pub(super) fn visit(
             "give it with the model of its bench's arm",
         ));
     }
-    let (first, last) = motion.source.lines;
-    for index in 0..motion.len() {
-        visitor(first - 1 + index, Ok(&LogRow::of(&motion, index)))?;
-    }
-    Ok(FileFacts {
-        sha256: motion.source.sha256,
-        rows: last,
-        warning: None,
-    })
+    let own = own_columns(&table, columns.split_at_gap_s);
+    Ok((table, own))
 }
 
-/// Reads a log without a model, and what it says of its bench.
+/// Reads a log without a model.
 ///
 /// # Errors
-/// As [`visit`].
-pub(super) fn read_alone(request: &LogRequest) -> Result<(Motion, Option<BenchFigures>)> {
-    read_of(request, None, &mut BamBench::default())
+/// As [`read`].
+pub(super) fn read_alone(bytes: &[u8], file: TableFile) -> Result<LogTable> {
+    let request = LogRequest::whole(file.path);
+    read_of(bytes, &request, None, &mut BamBench::default())
+}
+
+/// The columns of a bench's table: its names and units are its own, whatever a model says.
+fn own_columns(table: &LogTable, split_at_gap_s: Option<f64>) -> LogColumns {
+    let column = |name: &str, dimension: Dimension| Column {
+        name: name.to_string(),
+        unit: dimension.si(),
+        offset: 0.0,
+        reversed: false,
+        resolution: None,
+        shift_s: 0.0,
+    };
+    let has = |name: &&str| table.names.iter().any(|own| own == name);
+    let mean = |name: &str| Some(column(name, Dimension::Angle).into());
+    let speed = Some(SPEED).filter(has);
+    LogColumns {
+        time: column(TIME, Dimension::Time),
+        segment: None,
+        supply: Some(SUPPLY)
+            .filter(has)
+            .map(|name| column(name, Dimension::Voltage)),
+        torque_on: Some(TORQUE_ON).filter(has).map(str::to_string),
+        payload: Some(column(PAYLOAD, Dimension::Mass)),
+        payload_at_m: 0.0,
+        turned: None,
+        joints: vec![JointColumns {
+            position: mean(POSITION),
+            velocity: speed.map(|name| column(name, Dimension::Speed).into()),
+            rate: None,
+            rate_sensor: RateSensor::default(),
+            input: mean(GOAL),
+        }],
+        arm: None,
+        split_at_gap_s,
+    }
 }
 
 fn read_of(
+    bytes: &[u8],
     request: &LogRequest,
     columns: Option<&LogColumns>,
     bench: &mut BamBench,
-) -> Result<(Motion, Option<BenchFigures>)> {
+) -> Result<LogTable> {
     let path = &request.path;
-    let bytes = std::fs::read(path).map_err(|source| Error::file(path, "read", source))?;
-    if let Some(error) = foreign(path, &bytes[..bytes.len().min(HEAD)], LogFormat::Bam) {
-        return Err(error);
-    }
-    let log: Value = serde_json::from_slice(&bytes).map_err(|error| {
+    let log: Value = serde_json::from_slice(bytes).map_err(|error| {
         let place = Place::at(path, error.line().max(1), error.column().max(1));
         let message = error.to_string();
         Error::refused(place, LogReason::NotJson { message })
@@ -136,7 +169,7 @@ fn read_of(
         list: &all[first..=last],
         first,
     };
-    let time_s = entries.numbers("timestamp")?;
+    let time_s = entries.numbers(TIME)?;
     if let Some(late) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
         return Err(refuse(LogReason::EntryTime {
             entry: first + late + 1,
@@ -144,24 +177,28 @@ fn read_of(
             previous_s: time_s[late],
         }));
     }
-    let motion = Motion {
-        name: request.name(),
-        source: MotionSource {
-            path: path.clone(),
-            sha256: hex(Sha256::digest(&bytes)),
-            lines: (first + 1, last + 1),
-        },
-        position_rad: vec![entries.numbers("position")?],
-        velocity_rad_s: vec![entries.optional("speed")?],
-        rate_rad_s: vec![None],
-        input: vec![Some(entries.goals()?)],
-        supply_v: entries.optional("input_volts")?,
-        torque_on: entries.flags("torque_enable")?,
-        time_s,
-        payload_kg,
-        turned: false,
+    let mut table = LogTable {
+        constants: vec![(PAYLOAD.to_string(), payload_kg, 1)],
+        is_si: true,
+        bench: figures,
+        first,
+        is_entries: true,
+        ..LogTable::default()
     };
-    Ok((motion, figures))
+    let mut push = |name: &str, column: Option<Vec<f64>>| {
+        if let Some(column) = column {
+            table.names.push(name.to_string());
+            table.columns.push(column);
+        }
+    };
+    push(TIME, Some(time_s));
+    push(POSITION, Some(entries.numbers(POSITION)?));
+    push(GOAL, Some(entries.goals()?));
+    push(SPEED, entries.optional(SPEED)?);
+    push(SUPPLY, entries.optional(SUPPLY)?);
+    let flags = entries.flags(TORQUE_ON)?;
+    push(TORQUE_ON, flags.filter(|_| columns.is_some()));
+    Ok(table)
 }
 
 /// The payload of a log, kg, once its figures agree with the model's.
@@ -265,12 +302,12 @@ impl Entries<'_> {
 
     /// Goals; a released servo may have none, and then keeps its last.
     fn goals(&self) -> Result<Vec<f64>> {
-        let key = "goal_position";
+        let key = GOAL;
         let mut held = None;
         let mut goals = Vec::with_capacity(self.list.len());
         for (index, entry) in self.list.iter().enumerate() {
             let released = entry
-                .get("torque_enable")
+                .get(TORQUE_ON)
                 .is_some_and(|on| flag(on) == Some(false));
             match (entry.get(key), held) {
                 (None | Some(Value::Null), Some(goal)) if released => goals.push(goal),
@@ -281,7 +318,7 @@ impl Entries<'_> {
         Ok(goals)
     }
 
-    fn flags(&self, key: &'static str) -> Result<Option<Vec<bool>>> {
+    fn flags(&self, key: &'static str) -> Result<Option<Vec<f64>>> {
         if !self.has(key) {
             return Ok(None);
         }
@@ -290,6 +327,7 @@ impl Entries<'_> {
             let value = entry.get(key);
             value
                 .and_then(flag)
+                .map(|on| f64::from(u8::from(on)))
                 .ok_or_else(|| self.wrong(index, key, value, "true or false"))
         });
         flags.collect::<Result<_>>().map(Some)
@@ -305,7 +343,7 @@ impl Entries<'_> {
         let number = value
             .and_then(Value::as_f64)
             .ok_or_else(|| self.wrong(index, key, value, "a number"))?;
-        if key == "timestamp" || number.abs() <= LARGEST_READING {
+        if key == TIME || number.abs() <= LARGEST_READING {
             Ok(number)
         } else {
             Err(self.wrong(index, key, value, "a reading of at most 1000000"))

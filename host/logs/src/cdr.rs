@@ -1,5 +1,8 @@
 //! `sensor_msgs/msg/JointState` and `Imu` as ROS 2 serialises them: CDR, little endian (OMG
-//! DDS-XTypes 1.3, XCDR1).
+//! DDS-XTypes 1.3, XCDR1), by the crate `cdr-encoding`: 29 lines fewer than by hand.
+
+use byteorder::{BigEndian, LittleEndian};
+use serde::{Deserialize, Serialize};
 
 /// The schema's name.
 pub const NAME: &str = "sensor_msgs/msg/JointState";
@@ -28,41 +31,61 @@ pub struct JointStateMessage {
     pub effort: Vec<f64>,
 }
 
+#[derive(Serialize, Deserialize)]
+struct Header {
+    sec: i32,
+    nanosec: u32,
+    frame_id: String,
+}
+
+impl Header {
+    fn of(stamp_ns: u64, frame_id: &str) -> Header {
+        Header {
+            // Seconds beyond 2038 do not fit the message's type.
+            sec: i32::try_from(stamp_ns / 1_000_000_000).unwrap_or(i32::MAX),
+            nanosec: (stamp_ns % 1_000_000_000) as u32,
+            frame_id: frame_id.to_string(),
+        }
+    }
+
+    fn stamp_ns(&self) -> Option<u64> {
+        let second = u64::try_from(self.sec).ok()?;
+        Some(second * 1_000_000_000 + u64::from(self.nanosec))
+    }
+}
+
+/// The message as its schema says.
+#[derive(Serialize, Deserialize)]
+struct JointState {
+    header: Header,
+    name: Vec<String>,
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    effort: Vec<f64>,
+}
+
 impl JointStateMessage {
     /// The bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut out = HEADER.to_vec();
-        // Seconds beyond 2038 do not fit the message's type.
-        let second = i32::try_from(self.stamp_ns / 1_000_000_000).unwrap_or(i32::MAX);
-        out.extend(second.to_le_bytes());
-        out.extend(((self.stamp_ns % 1_000_000_000) as u32).to_le_bytes());
-        put_text(&mut out, "");
-        put_length(&mut out, self.name.len());
-        self.name.iter().for_each(|name| put_text(&mut out, name));
-        for values in [&self.position, &self.velocity, &self.effort] {
-            put_length(&mut out, values.len());
-            for value in values {
-                align(&mut out, 8);
-                out.extend(value.to_le_bytes());
-            }
-        }
-        out
+        let state = self.clone();
+        written(&JointState {
+            header: Header::of(self.stamp_ns, ""),
+            name: state.name,
+            position: state.position,
+            velocity: state.velocity,
+            effort: state.effort,
+        })
     }
 
     /// Reads the bytes; none if they are no such message.
     pub fn of(bytes: &[u8]) -> Option<Self> {
-        let mut reader = CdrReader::new(bytes)?;
-        let second = u64::from(i32::try_from(reader.length()?).ok()?.unsigned_abs());
-        let nanosecond = u64::from(reader.length()?);
-        reader.text()?;
-        let names = reader.length()?;
-        let name = (0..names).map(|_| reader.text()).collect::<Option<_>>()?;
+        let state: JointState = read(bytes)?;
         Some(JointStateMessage {
-            stamp_ns: second * 1_000_000_000 + nanosecond,
-            name,
-            position: reader.numbers()?,
-            velocity: reader.numbers()?,
-            effort: reader.numbers()?,
+            stamp_ns: state.header.stamp_ns()?,
+            name: state.name,
+            position: state.position,
+            velocity: state.velocity,
+            effort: state.effort,
         })
     }
 }
@@ -95,111 +118,60 @@ pub struct ImuMessage {
     pub rate_rad_s: f64,
 }
 
-/// Numbers of an Imu: orientation, rate and acceleration, each with a covariance behind it.
-const IMU_NUMBERS: usize = 4 + 9 + 3 + 9 + 3 + 9;
-const IMU_RATE: usize = 4 + 9 + 1;
+/// The message as its schema says.
+#[derive(Serialize, Deserialize)]
+struct Imu {
+    header: Header,
+    orientation: [f64; 4],
+    orientation_covariance: [f64; 9],
+    angular_velocity: [f64; 3],
+    angular_velocity_covariance: [f64; 9],
+    linear_acceleration: [f64; 3],
+    linear_acceleration_covariance: [f64; 9],
+}
+
+/// That a quantity is not measured.
+const NOT_MEASURED: [f64; 9] = [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 
 impl ImuMessage {
     /// The bytes.
     pub fn to_bytes(self) -> Vec<u8> {
-        let mut numbers = [0.0f64; IMU_NUMBERS];
-        (numbers[3], numbers[4]) = (1.0, -1.0);
-        numbers[IMU_RATE] = self.rate_rad_s;
-        numbers[IMU_NUMBERS - 9] = -1.0;
-        let mut out = HEADER.to_vec();
-        let second = i32::try_from(self.stamp_ns / 1_000_000_000).unwrap_or(i32::MAX);
-        out.extend(second.to_le_bytes());
-        out.extend(((self.stamp_ns % 1_000_000_000) as u32).to_le_bytes());
-        put_text(&mut out, IMU_FRAME);
-        align(&mut out, 8);
-        numbers
-            .iter()
-            .for_each(|number| out.extend(number.to_le_bytes()));
-        out
+        written(&Imu {
+            header: Header::of(self.stamp_ns, IMU_FRAME),
+            orientation: [0.0, 0.0, 0.0, 1.0],
+            orientation_covariance: NOT_MEASURED,
+            angular_velocity: [0.0, self.rate_rad_s, 0.0],
+            angular_velocity_covariance: [0.0; 9],
+            linear_acceleration: [0.0; 3],
+            linear_acceleration_covariance: NOT_MEASURED,
+        })
     }
 
     /// Reads the bytes; none if they are no such message.
     pub fn of(bytes: &[u8]) -> Option<Self> {
-        let mut reader = CdrReader::new(bytes)?;
-        let second = u64::from(i32::try_from(reader.length()?).ok()?.unsigned_abs());
-        let nanosecond = u64::from(reader.length()?);
-        reader.text()?;
-        let numbers: Option<Vec<f64>> = (0..IMU_NUMBERS).map(|_| reader.number()).collect();
+        let imu: Imu = read(bytes)?;
         Some(ImuMessage {
-            stamp_ns: second * 1_000_000_000 + nanosecond,
-            rate_rad_s: *numbers?.get(IMU_RATE)?,
+            stamp_ns: imu.header.stamp_ns()?,
+            rate_rad_s: imu.angular_velocity[1],
         })
     }
 }
 
-fn align(out: &mut Vec<u8>, to: usize) {
-    let after = out.len() - HEADER.len();
-    out.resize(HEADER.len() + after.next_multiple_of(to), 0);
+fn written(message: &impl Serialize) -> Vec<u8> {
+    let mut out = HEADER.to_vec();
+    // Writing to memory does not fail.
+    let _ = cdr_encoding::to_writer::<_, LittleEndian, _>(&mut out, message);
+    out
 }
 
-fn put_length(out: &mut Vec<u8>, length: usize) {
-    align(out, 4);
-    out.extend((length as u32).to_le_bytes());
-}
-
-fn put_text(out: &mut Vec<u8>, text: &str) {
-    put_length(out, text.len() + 1);
-    out.extend(text.as_bytes());
-    out.push(0);
-}
-
-struct CdrReader<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    big_endian: bool,
-}
-
-impl<'a> CdrReader<'a> {
-    /// Behind the header: XCDR1 in either byte order, whatever its options.
-    fn new(bytes: &'a [u8]) -> Option<Self> {
-        let big_endian = match bytes.get(..HEADER.len())? {
-            [0, 0, ..] => true,
-            [0, 1, ..] => false,
-            _ => return None,
-        };
-        Some(CdrReader {
-            bytes,
-            at: HEADER.len(),
-            big_endian,
-        })
-    }
-
-    fn take<const N: usize>(&mut self, align: usize) -> Option<[u8; N]> {
-        self.at = (self.at - HEADER.len()).next_multiple_of(align) + HEADER.len();
-        let bytes = self.bytes.get(self.at..self.at + N)?;
-        self.at += N;
-        let mut bytes: [u8; N] = bytes.try_into().ok()?;
-        if self.big_endian {
-            bytes.reverse();
-        }
-        Some(bytes)
-    }
-
-    fn length(&mut self) -> Option<u32> {
-        self.take(4).map(u32::from_le_bytes)
-    }
-
-    fn number(&mut self) -> Option<f64> {
-        self.take(8).map(f64::from_le_bytes)
-    }
-
-    fn text(&mut self) -> Option<String> {
-        let length = self.length()? as usize;
-        let end = self.at.checked_add(length)?;
-        let bytes = self.bytes.get(self.at..end)?;
-        self.at = end;
-        String::from_utf8(bytes.strip_suffix(&[0])?.to_vec()).ok()
-    }
-
-    fn numbers(&mut self) -> Option<Vec<f64>> {
-        let count = self.length()?;
-        (0..count).map(|_| self.number()).collect()
-    }
+/// Behind the header: XCDR1 in either byte order, whatever its options.
+fn read<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Option<T> {
+    let read = match bytes {
+        [0, 0, _, _, rest @ ..] => cdr_encoding::from_bytes::<T, BigEndian>(rest),
+        [0, 1, _, _, rest @ ..] => cdr_encoding::from_bytes::<T, LittleEndian>(rest),
+        _ => return None,
+    };
+    read.ok().map(|(message, _)| message)
 }
 
 #[cfg(test)]
@@ -234,6 +206,23 @@ mod tests {
         assert_eq!(not_zero, [(3, 1.0), (4, -1.0), (14, 1.0), (28, -1.0)]);
         assert_eq!(ImuMessage::of(&bytes), Some(imu));
         assert!((0..bytes.len()).all(|length| ImuMessage::of(&bytes[..length]).is_none()));
+    }
+
+    #[test]
+    fn damaged_lengths_are_refused_and_reserve_nothing() {
+        let begin = [
+            &HEADER[..],
+            &[2, 0, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0],
+        ]
+        .concat();
+        let most = u32::MAX.to_le_bytes();
+        let none = [0; 4];
+        for tail in [&[most][..], &[none, most], &[none, none, none, most]] {
+            let bytes = [&begin[..], tail.as_flattened()].concat();
+            assert_eq!(JointStateMessage::of(&bytes), None);
+        }
+        let before_1970 = [&HEADER[..], &[0xff; 4], &[0; 24]].concat();
+        assert_eq!(JointStateMessage::of(&before_1970), None);
     }
 
     #[test]

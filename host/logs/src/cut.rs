@@ -1,15 +1,20 @@
 //! Cuts a log's rows into motions, at segments and gaps, whatever its format.
 
 use super::bam::BamBench;
+use super::format::LogFormat;
 use super::read::LEAST_ROWS;
 use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::{Before, Fields, LogRow};
+use super::row_reader::RowReader;
 use super::short::ShortMotions;
-use super::visit::{FileFacts, visit};
+use super::table::LogTable;
+use super::{LogFinding, Severity, bam};
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
 use crate::motion::{Motion, MotionSource, ends_s};
+use std::borrow::Cow;
+use std::path::Path;
 
 /// What is told of each fault of a log, with the kind of its finding; an error ends the reading.
 pub(super) type Report<'a> = &'a mut dyn FnMut(&'static str, Error) -> Result<()>;
@@ -49,6 +54,30 @@ impl Cut {
     }
 }
 
+/// What is known of a file once it has been read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FileFacts {
+    /// SHA-256 of all its bytes, lower-case hexadecimal.
+    pub sha256: String,
+    /// What looks wrong with the file as a whole, and what to do about it.
+    warning: Option<(&'static str, &'static str)>,
+}
+
+impl FileFacts {
+    /// What looks wrong with this file, as a finding.
+    pub fn finding(&self, path: &Path) -> Option<LogFinding> {
+        let (what, remedy) = self.warning?;
+        Some(LogFinding {
+            kind: "file",
+            severity: Severity::Warn,
+            place: Some(Place::file(path)),
+            what: what.to_string(),
+            remedy: remedy.to_string(),
+            proof: None,
+        })
+    }
+}
+
 /// Reads a log and cuts it. Where `report` goes on after a fault, so does the reading: without the
 /// row that is wrong, and with a motion of its own behind a clock that was set back.
 pub(super) fn cut(
@@ -57,15 +86,32 @@ pub(super) fn cut(
     bench: &mut BamBench,
     report: Report,
 ) -> (Cut, Result<FileFacts>) {
-    let mut cutter = Cutter {
-        request,
-        columns,
-        report,
-        open: None,
-        cut: Cut::default(),
-    };
-    let facts = cutter.read(bench);
-    (cutter.cut, facts)
+    let mut cut = Cut::default();
+    let facts = (|| {
+        let (table, columns) = match LogFormat::of(&request.path) {
+            LogFormat::Bam => {
+                let (table, own) = bam::read(request, columns, bench)?;
+                (table, Cow::Owned(own))
+            }
+            format => {
+                let table = LogTable::read(&request.path, format, Some(columns))?;
+                (table, Cow::Borrowed(columns))
+            }
+        };
+        let mut cutter = Cutter {
+            request,
+            columns: &columns,
+            report,
+            open: None,
+            cut: &mut cut,
+        };
+        cutter.read(&table)?;
+        Ok(FileFacts {
+            sha256: table.sha256,
+            warning: table.warning,
+        })
+    })();
+    (cut, facts)
 }
 
 /// Rows before the first of a motion that lack what a motion begins with.
@@ -93,27 +139,32 @@ struct Cutter<'a> {
     report: Report<'a>,
     /// The motion that goes on.
     open: Option<CutMotion>,
-    cut: Cut,
+    cut: &'a mut Cut,
 }
 
 impl Cutter<'_> {
-    fn read(&mut self, bench: &mut BamBench) -> Result<FileFacts> {
-        let (request, columns) = (self.request, self.columns);
-        let facts = visit(request, columns, bench, &mut |number, row| {
-            if !request.wants(number) {
-                return Ok(());
+    fn read(&mut self, table: &LogTable) -> Result<()> {
+        let reader = RowReader::new(&self.request.path, self.columns, table)?;
+        let mut row = LogRow {
+            path: self.request.path.clone(),
+            fields: reader.fields(),
+            ..LogRow::default()
+        };
+        for index in 0..table.rows() {
+            let filled = reader.fill(index, &mut row);
+            if !self.request.wants(table.first + index) {
+                continue;
             }
             self.cut.rows += 1;
-            match row {
-                Ok(row) => self.take(row),
-                Err(error) => (self.report)("cell", error),
+            match filled {
+                Ok(()) => self.take(&row)?,
+                Err(error) => (self.report)("cell", error)?,
             }
-        })?;
-        if let Some(reason) = request.beyond(facts.rows) {
+        }
+        if let Some(reason) = self.request.beyond(table.first + table.rows()) {
             self.refuse("range", reason)?;
         }
-        self.close()?;
-        Ok(facts)
+        self.close()
     }
 
     /// Something is wrong with the file.
@@ -165,12 +216,7 @@ impl Cutter<'_> {
         let Some(ended) = self.open.take() else {
             return Ok(());
         };
-        let ends_s = if self.request.is_json() {
-            (0.0, 0.0)
-        } else {
-            ends_s(self.columns)
-        };
-        let rows = rows_left(&ended.motion.time_s, ends_s);
+        let rows = rows_left(&ended.motion.time_s, ends_s(self.columns));
         if rows < LEAST_ROWS {
             self.cut.short.take(ended.motion.source.lines, rows);
             return Ok(());

@@ -5,45 +5,21 @@ use super::iso::iso_ns;
 use super::layout::{BLANKS, LOOK, Layout, names_row};
 use super::lines::Lines;
 use super::reason::LogReason;
-use super::table::LogTable;
 use crate::error::{Error, Place, Result};
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Columns and constants of one file.
 #[derive(Debug)]
 pub(super) struct LogHeader {
-    /// The file, for errors.
-    path: PathBuf,
     /// Between two fields: `,`, `;`, tab, `|` or blanks.
     pub separator: u8,
     /// Column names in the file's order, trimmed.
     pub names: Vec<String>,
     /// Line of the names, counted from 1.
-    line: usize,
+    pub line: usize,
     /// `# key = value` before the names, with their line.
-    constants: Vec<(String, f64, usize)>,
-    /// Columns of a table that hold no numbers a row, and what they hold.
-    left_out: Vec<(String, Cow<'static, str>)>,
-}
-
-/// Where a quantity's value comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum LogCell {
-    /// Field of each row, counted from 0.
-    Field(usize),
-    /// One number for the whole file, from the comment on this line.
-    Constant(f64, usize),
-}
-
-impl LogCell {
-    /// The field counted from 1, as places count; 1 for a constant.
-    pub fn column(&self) -> usize {
-        match self {
-            LogCell::Field(index) => index + 1,
-            LogCell::Constant(..) => 1,
-        }
-    }
+    pub constants: Vec<(String, f64, usize)>,
 }
 
 impl LogHeader {
@@ -103,77 +79,13 @@ impl LogHeader {
             }
             let separator = layout.separator();
             let header = LogHeader {
-                path: path.to_path_buf(),
                 separator,
                 names: owned(&names, separator),
                 line,
                 constants,
-                left_out: Vec::new(),
             };
             return Ok((header, first));
         }
-    }
-
-    /// The header of a table.
-    pub fn of_table(path: &Path, table: &LogTable) -> LogHeader {
-        let constants = table.constants.iter();
-        LogHeader {
-            path: path.to_path_buf(),
-            separator: b',',
-            names: table.names.clone(),
-            line: 1,
-            constants: constants
-                .map(|(name, value)| (name.clone(), *value, 1))
-                .collect(),
-            left_out: table.left_out.clone(),
-        }
-    }
-
-    /// Where the column of this name is.
-    ///
-    /// # Errors
-    /// No such column, with those found and the likeliest meant; a name that stands there twice.
-    pub fn cell(&self, name: &str) -> Result<LogCell> {
-        let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
-        match (found.next(), found.next()) {
-            (Some(_), Some(second)) => {
-                let column = name.to_string();
-                let place = Place::at(&self.path, self.line, second + 1);
-                Err(Error::refused(place, LogReason::ColumnTwice { column }))
-            }
-            (Some(index), None) => Ok(LogCell::Field(index)),
-            (None, _) => match self.constants.iter().find(|(key, ..)| key == name) {
-                Some((_, value, line)) => Ok(LogCell::Constant(*value, *line)),
-                None => Err(self.missing(name)),
-            },
-        }
-    }
-
-    fn missing(&self, name: &str) -> Error {
-        let place = Place::at(&self.path, self.line, 1);
-        let column = name.to_string();
-        if let Some((_, holds)) = self.left_out.iter().find(|(left_out, _)| left_out == name) {
-            let holds = holds.clone();
-            return Error::refused(place, LogReason::ColumnLeftOut { column, holds });
-        }
-        let plain = |name: &str| -> String {
-            let letters = name.chars().filter(|letter| letter.is_alphanumeric());
-            letters.flat_map(char::to_lowercase).collect()
-        };
-        let likeness = |known: &str| strsim::jaro_winkler(&plain(known), &plain(name));
-        let constants = self.constants.iter().map(|(key, ..)| key);
-        let nearest = self
-            .names
-            .iter()
-            .chain(constants)
-            .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
-            .filter(|known| likeness(known) > 0.8);
-        let reason = LogReason::NoColumn {
-            column,
-            nearest: nearest.cloned(),
-            found: self.names.clone(),
-        };
-        Error::refused(place, reason)
     }
 }
 

@@ -33,7 +33,6 @@ mod same_rows;
 mod short;
 mod standard_input;
 mod table;
-mod visit;
 mod write;
 
 #[cfg(test)]

@@ -30,6 +30,8 @@ pub(super) struct Lines {
     ahead: VecDeque<Vec<u8>>,
     /// The present line's number, counted from 1; 0 before the first.
     pub number: usize,
+    /// Bytes of the lines so far.
+    pub bytes: usize,
 }
 
 impl Lines {
@@ -66,6 +68,7 @@ impl Lines {
             line: Vec::new(),
             ahead: VecDeque::new(),
             number: 0,
+            bytes: 0,
         })
     }
 
@@ -85,6 +88,7 @@ impl Lines {
             return Ok(None);
         }
         self.number += 1;
+        self.bytes += self.line.len();
         self.hash.update(&self.line);
         if self.line.len() > LONGEST_LINE {
             let place = Place::at(&self.path, self.number, 1);

@@ -2,7 +2,11 @@
 //!
 //! The format: mcap.dev/spec. Kept beside the crate `mcap`, which writes recordings: its reader
 //! trusts what lengths say. Version 0.26 reserves 4 GB for a name whose length is damaged, and
-//! panics on a short attachment. Here every length is held against what is there.
+//! panics on a short attachment. Here every length is held against what is there. Its
+//! `LinearReader` bounds records, not the names in them: `parse_record` reserves what a name's
+//! length says, and a reservation that fails ends the program. With chunks unpacked here, for its
+//! packings build C, it would frame records alone, in 51 lines for the 37 of [`messages`] and
+//! `record`.
 
 use ::mcap::MAGIC;
 use std::borrow::Cow;

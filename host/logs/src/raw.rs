@@ -1,13 +1,10 @@
 //! A log's columns as they stand in the file, before a model says what they mean.
 
-use super::bam::{self, BenchFigures};
-use super::cell::{is_missing, number};
+use super::bam::BenchFigures;
 use super::format::LogFormat;
-use super::header::{LogHeader, comment, fields, surplus};
-use super::iso::iso_ns;
 use super::lerobot::{DatasetFacts, LerobotDataset, raw_log};
-use super::lines::Lines;
 use super::reading_limit::ReadingLimit;
+use super::reason::LogReason;
 use super::request::LogRequest;
 use super::table::LogTable;
 use crate::error::{Error, Place, Result};
@@ -55,31 +52,28 @@ impl RawLog {
         if LerobotDataset::is_one(path) {
             return raw_log(path, checked);
         }
-        match LogFormat::of(path) {
-            LogFormat::Bam => {
-                let (motion, bench) = bam::read_alone(&LogRequest::whole(path))?;
-                Ok(of_bam(motion, bench))
-            }
-            LogFormat::Csv => read_csv(path, checked),
-            format => {
-                let table = LogTable::read(path, format, None)?;
-                let left_out = table.left_out.into_iter();
-                let log = RawLog {
-                    iso: vec![false; table.names.len()],
-                    words: vec![None; table.names.len()],
-                    names: table.names,
-                    columns: table.columns,
-                    left_out: left_out.map(|(name, holds)| (name, holds.into())).collect(),
-                    warning: table.warning,
-                    is_si: table.is_si,
-                    bench: None,
-                    dataset: None,
-                };
-                if let Some(request) = checked {
-                    ReadingLimit::new(request, &log.names).hold_table(&log)?;
-                }
-                Ok(log)
-            }
+        let table = LogTable::read(path, LogFormat::of(path), None)?;
+        hold(path, &table, checked)?;
+        Ok(RawLog::of(table))
+    }
+
+    fn of(table: LogTable) -> RawLog {
+        let width = table.names.len();
+        let (iso, words) = match table.text {
+            Some(text) => (text.iso, text.words),
+            None => (vec![false; width], vec![None; width]),
+        };
+        let left_out = table.left_out.into_iter();
+        RawLog {
+            names: table.names,
+            columns: table.columns,
+            iso,
+            words,
+            left_out: left_out.map(|(name, holds)| (name, holds.into())).collect(),
+            warning: table.warning,
+            is_si: table.is_si,
+            bench: table.bench,
+            dataset: None,
         }
     }
 
@@ -151,100 +145,27 @@ impl RawLog {
     }
 }
 
-fn read_csv(path: &Path, checked: Option<&LogRequest>) -> Result<RawLog> {
-    let mut lines = Lines::open(path)?;
-    let (header, first) = LogHeader::read(path, &mut lines, None)?;
-    let mut rows = CsvRows {
-        limit: checked.map(|request| ReadingLimit::new(request, &header.names)),
-        separator: header.separator,
-        first_ns: vec![None; header.names.len()],
-        log: RawLog {
-            columns: vec![Vec::new(); header.names.len()],
-            iso: vec![false; header.names.len()],
-            words: vec![None; header.names.len()],
-            names: header.names,
-            ..RawLog::default()
-        },
-    };
-    if let Some(line) = first {
-        rows.take(&line, lines.number)?;
-    }
-    loop {
-        let at = lines.number + 1;
-        match lines.next()? {
-            None => return Ok(rows.log),
-            Some(line) if line.trim().is_empty() || comment(line).is_some() => {}
-            Some(line) => rows.take(line, at)?,
-        }
-    }
-}
-
-/// Rows of text as they become columns.
-struct CsvRows<'a> {
-    log: RawLog,
-    separator: u8,
-    /// The first time stamp of each column that holds them, ns.
-    first_ns: Vec<Option<i64>>,
-    limit: Option<ReadingLimit<'a>>,
-}
-
-impl CsvRows<'_> {
-    fn take(&mut self, line: &str, at: usize) -> Result<()> {
-        let mut cells = fields(line, self.separator);
-        let found = cells.len();
-        let is_wide = surplus(&mut cells, &self.log.names) && found > self.log.names.len();
-        if let Some(limit) = self.limit.as_ref().filter(|_| is_wide) {
-            limit.refuse_wide(at, found, self.log.names.len())?;
-        }
-        for index in 0..self.log.columns.len() {
-            let cell = cells.get(index).map_or("", |cell| cell);
-            let value = number(cell, self.separator).or_else(|| self.stamp_s(index, cell));
-            if value.is_none() && self.log.words[index].is_none() && !is_missing(cell) {
-                self.log.words[index] = Some(cell.to_string());
+/// Refuses what no row may hold, whatever its columns mean: bytes that are no text. Of the rows
+/// asked for, readings must be ones that a sensor gives, and fields must not be too many: which is
+/// which nothing tells.
+fn hold(path: &Path, table: &LogTable, checked: Option<&LogRequest>) -> Result<()> {
+    let limit = checked.map(|request| ReadingLimit::new(request, &table.names));
+    for row in 0..table.rows() {
+        if let Some((field, reason)) = table.fault(row) {
+            let is_borne = match reason {
+                LogReason::FieldCount { found, expected } => found <= expected || limit.is_none(),
+                _ => false,
+            };
+            if !is_borne {
+                let place = Place::at(path, table.line(row), *field);
+                return Err(Error::refused(place, reason.clone()));
             }
-            let value = value.unwrap_or(f64::NAN);
-            let row = self.log.columns[index].len();
-            if let Some(limit) = &self.limit {
-                let name = (self.log.names[index].as_str(), index);
-                limit.hold(row, at, name, value, || cell.to_string())?;
-            }
-            self.log.columns[index].push(value);
         }
-        Ok(())
+        if let Some(limit) = &limit {
+            limit.hold(table, row)?;
+        }
     }
-
-    /// A time stamp, s from the column's first; none in a column that began with something else.
-    fn stamp_s(&mut self, index: usize, cell: &str) -> Option<f64> {
-        if !self.log.iso[index] && !self.log.columns[index].is_empty() {
-            return None;
-        }
-        let stamp_ns = iso_ns(cell)?;
-        self.log.iso[index] = true;
-        let first_ns = *self.first_ns[index].get_or_insert(stamp_ns);
-        Some(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
-    }
-}
-
-fn of_bam(motion: crate::motion::Motion, bench: Option<BenchFigures>) -> RawLog {
-    let mut log = RawLog {
-        is_si: true,
-        bench,
-        ..RawLog::default()
-    };
-    let mut push = |name: &str, column: Option<Vec<f64>>| {
-        if let Some(column) = column {
-            log.names.push(name.into());
-            log.iso.push(false);
-            log.words.push(None);
-            log.columns.push(column);
-        }
-    };
-    push("timestamp", Some(motion.time_s));
-    push("position", motion.position_rad.into_iter().next());
-    push("goal_position", motion.input.into_iter().next().flatten());
-    push("speed", motion.velocity_rad_s.into_iter().next().flatten());
-    push("input_volts", motion.supply_v);
-    log
+    Ok(())
 }
 
 #[cfg(test)]

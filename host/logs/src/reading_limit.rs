@@ -1,9 +1,9 @@
 //! The limit of what a sensor gives, for columns that a model explains and for raw ones.
 
 use super::init::name_guess;
-use super::raw::RawLog;
 use super::reason::LogReason;
 use super::request::LogRequest;
+use super::table::LogTable;
 use crate::error::{Error, Place, Result};
 use crate::model::{Dimension, Unit};
 
@@ -44,51 +44,21 @@ impl<'a> ReadingLimit<'a> {
         }
     }
 
-    /// Refuses a row that has more fields than there are names: which is which nothing tells.
+    /// Refuses a number of a row, counted from 0, that no sensor gives.
     ///
     /// # Errors
-    /// Always.
-    pub fn refuse_wide(&self, line: usize, found: usize, expected: usize) -> Result<()> {
-        let place = Place::at(&self.request.path, line, expected + 1);
-        Err(Error::refused(
-            place,
-            LogReason::FieldCount { found, expected },
-        ))
-    }
-
-    /// Refuses a value of a row, counted from 0, that is `found` at this line of the column.
-    ///
-    /// # Errors
-    /// A number that no sensor gives.
-    pub fn hold(
-        &self,
-        row: usize,
-        line: usize,
-        (name, column): (&str, usize),
-        value: f64,
-        found: impl FnOnce() -> String,
-    ) -> Result<()> {
-        let unit = self.units[column].filter(|_| self.request.wants(row));
-        let refusal =
-            unit.and_then(|unit| beyond_readings(name, unit.to_si(value), unit.dimension, found));
-        match refusal {
-            Some(reason) => {
-                let place = Place::at(&self.request.path, line, column + 1);
-                Err(Error::refused(place, reason))
-            }
-            None => Ok(()),
+    /// The first such number.
+    pub fn hold(&self, table: &LogTable, row: usize) -> Result<()> {
+        if !self.request.wants(row) {
+            return Ok(());
         }
-    }
-
-    /// Refuses the first such value of a table, whose rows count as lines.
-    ///
-    /// # Errors
-    /// A number that no sensor gives.
-    pub fn hold_table(&self, log: &RawLog) -> Result<()> {
-        for row in 0..log.columns.first().map_or(0, Vec::len) {
-            for (index, (name, column)) in log.names.iter().zip(&log.columns).enumerate() {
-                let found = || column[row].to_string();
-                self.hold(row, row + 1, (name, index), column[row], found)?;
+        for (index, unit) in self.units.iter().enumerate() {
+            let Some(unit) = unit else { continue };
+            let si = unit.to_si(table.columns[index][row]);
+            let found = || table.text(row, index).into();
+            if let Some(reason) = beyond_readings(&table.names[index], si, unit.dimension, found) {
+                let place = Place::at(&self.request.path, table.line(row), index + 1);
+                return Err(Error::refused(place, reason));
             }
         }
         Ok(())

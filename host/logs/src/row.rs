@@ -84,31 +84,6 @@ pub(super) struct Before<'a> {
 }
 
 impl LogRow {
-    /// Sample `index` of a motion that came from no CSV.
-    pub(super) fn of(motion: &crate::motion::Motion, index: usize) -> LogRow {
-        let at = |series: &Option<Vec<f64>>| series.as_ref().map(|values| values[index]);
-        let joints = motion.position_rad.len();
-        LogRow {
-            path: motion.source.path.clone(),
-            line: motion.source.lines.0 + index,
-            fields: Fields {
-                position: vec![0; joints],
-                input: vec![0; joints],
-                ..Fields::default()
-            },
-            time_s: motion.time_s[index],
-            segment: None,
-            position_rad: motion.position_rad.iter().map(|q| q[index]).collect(),
-            velocity_rad_s: motion.velocity_rad_s.iter().map(at).collect(),
-            rate_rad_s: motion.rate_rad_s.iter().map(at).collect(),
-            input: motion.input.iter().map(at).collect(),
-            supply_v: at(&motion.supply_v),
-            torque_on: motion.torque_on.as_ref().map(|values| values[index]),
-            payload_kg: motion.payload_kg,
-            turned: motion.turned,
-        }
-    }
-
     /// Why this row cannot follow `previous` within a motion; `None` if a new motion begins with
     /// it: another segment, or a gap longer than `split_at_gap_s`.
     pub(super) fn follows(

@@ -1,11 +1,10 @@
-//! Turns the lines of a CSV log into rows.
+//! Reads the rows of a table in SI, by the columns that a model names.
 
-use super::cell::{is_missing, number};
-use super::header::{LogCell, LogHeader, fields, surplus};
 use super::iso::iso_ns;
 use super::reading_limit::beyond_readings;
 use super::reason::{FLAG, LogReason, STAMP};
 use super::row::{Fields, LogRow};
+use super::table::{LogCell, LogTable};
 use crate::error::{Error, Place, Result};
 use crate::model::{Column, ColumnMean, Dimension, LogColumns};
 use std::borrow::Cow;
@@ -28,11 +27,10 @@ struct JointQuantities<'a> {
     input: Mean<'a>,
 }
 
-/// Reads the lines of one file.
+/// Reads the rows of one file.
 pub(super) struct RowReader<'a> {
     path: &'a Path,
-    separator: u8,
-    names: Vec<String>,
+    table: &'a LogTable,
     time: LogQuantity<'a>,
     segment: Option<LogCell>,
     supply: Option<LogQuantity<'a>>,
@@ -49,10 +47,11 @@ impl<'a> RowReader<'a> {
     ///
     /// # Errors
     /// A column that is missing or ambiguous.
-    pub fn new(path: &'a Path, columns: &'a LogColumns, header: &LogHeader) -> Result<Self> {
-        let cell = |name: &Option<String>| name.as_ref().map(|name| header.cell(name)).transpose();
+    pub fn new(path: &'a Path, columns: &'a LogColumns, table: &'a LogTable) -> Result<Self> {
+        let named = |name: &str| table.cell(path, name);
+        let cell = |name: &Option<String>| name.as_deref().map(named).transpose();
         let quantity = |column: &'a Column| {
-            let cell = header.cell(&column.name)?;
+            let cell = named(&column.name)?;
             Ok::<_, Error>(LogQuantity { cell, column })
         };
         let maybe = |column: &'a Option<Column>| column.as_ref().map(quantity).transpose();
@@ -70,8 +69,7 @@ impl<'a> RowReader<'a> {
         });
         Ok(RowReader {
             path,
-            separator: header.separator,
-            names: header.names.clone(),
+            table,
             time: quantity(&columns.time)?,
             segment: cell(&columns.segment)?,
             supply: maybe(&columns.supply)?,
@@ -94,6 +92,13 @@ impl<'a> RowReader<'a> {
                 .unwrap_or(0)
         };
         let joints = || self.joints.iter();
+        if self.table.is_entries {
+            return Fields {
+                position: vec![0; self.joints.len()],
+                input: vec![0; self.joints.len()],
+                ..Fields::default()
+            };
+        }
         Fields {
             time: self.time.cell.column(),
             payload: column(&self.payload),
@@ -105,56 +110,24 @@ impl<'a> RowReader<'a> {
         }
     }
 
-    /// Fills `row` from one line.
+    /// Fills `row` from one row of the table, counted from 0.
     ///
-    /// An empty field, or one that says `nan`, `NA`, `NULL` or the like, is a gap: that quantity is
+    /// What is not a number, or says `nan`, `NA`, `NULL` or the like, is a gap: that quantity is
     /// not a number in this row.
     ///
     /// # Errors
-    /// Too few or too many fields, fields that hold something else than a finite number, and a row
-    /// without a time.
-    pub fn fill(&self, line: &str, at: usize, row: &mut LogRow) -> Result<()> {
-        let mut fields = fields(line, self.separator);
-        let (found, expected) = (fields.len(), self.names.len());
-        if surplus(&mut fields, &self.names) {
-            let place = Place::at(self.path, at, found.min(expected) + 1);
-            let reason = LogReason::FieldCount { found, expected };
-            return Err(Error::refused(place, reason));
+    /// Too few or too many fields, fields that hold something else than a finite number, a flag
+    /// that is neither 0 nor 1, and a row without a time.
+    pub fn fill(&self, index: usize, row: &mut LogRow) -> Result<()> {
+        row.line = self.table.line(index);
+        if let Some((field, reason)) = self.table.fault(index) {
+            let place = Place::at(self.path, row.line, *field);
+            return Err(Error::refused(place, reason.clone()));
         }
-        let source = RowSource::Text(&fields);
-        self.take(
-            &Cells {
-                reader: self,
-                source,
-                at,
-            },
-            row,
-        )
-    }
-
-    /// Fills `row` from one row of a table's columns; what is not a number is a gap.
-    ///
-    /// # Errors
-    /// An infinite number, a flag that is neither 0 nor 1, and a row without a time.
-    pub fn fill_numbers(
-        &self,
-        columns: &[Vec<f64>],
-        number: usize,
-        row: &mut LogRow,
-    ) -> Result<()> {
-        let source = RowSource::Numbers(columns, number);
-        let at = number + 1;
-        self.take(
-            &Cells {
-                reader: self,
-                source,
-                at,
-            },
-            row,
-        )
-    }
-
-    fn take(&self, line: &Cells, row: &mut LogRow) -> Result<()> {
+        let line = Cells {
+            reader: self,
+            row: index,
+        };
         row.time_s = line.value(&self.time)?;
         row.segment = self.segment.as_ref().map(|cell| line.text(cell).into());
         row.supply_v = self.supply.as_ref().map(|q| line.gap_or(q)).transpose()?;
@@ -183,19 +156,11 @@ impl<'a> RowReader<'a> {
     }
 }
 
-/// What a row is made of.
-enum RowSource<'a> {
-    /// The fields of one line.
-    Text(&'a [Cow<'a, str>]),
-    /// A row of these columns, counted from 0.
-    Numbers(&'a [Vec<f64>], usize),
-}
-
 /// The fields of one row.
 struct Cells<'a> {
     reader: &'a RowReader<'a>,
-    source: RowSource<'a>,
-    at: usize,
+    /// Counted from 0.
+    row: usize,
 }
 
 impl Cells<'_> {
@@ -227,10 +192,10 @@ impl Cells<'_> {
     fn value(&self, LogQuantity { cell, column }: &LogQuantity) -> Result<f64> {
         let written = match cell {
             LogCell::Constant(value, _) => Some(*value),
-            LogCell::Field(index) if column.unit.name == "iso8601" => {
-                return self.stamp_s(cell, *index);
+            LogCell::Field(_) if column.unit.name == "iso8601" => {
+                return self.stamp_s(cell);
             }
-            LogCell::Field(index) => self.written(*index),
+            LogCell::Field(index) => self.table().number(self.row, *index),
         };
         match written.map(|written| column.to_si(written)) {
             Some(value) if value.is_finite() => self.reading(cell, column, value),
@@ -249,52 +214,43 @@ impl Cells<'_> {
         }
     }
 
-    /// The number that stands in a field, if one does.
-    fn written(&self, index: usize) -> Option<f64> {
-        match &self.source {
-            RowSource::Text(fields) => number(&fields[index], self.reader.separator),
-            RowSource::Numbers(columns, row) => Some(columns[index][*row]).filter(|v| !v.is_nan()),
-        }
+    fn table(&self) -> &LogTable {
+        self.reader.table
     }
 
     /// Seconds since the file's first stamp.
-    fn stamp_s(&self, cell: &LogCell, index: usize) -> Result<f64> {
-        let stamp_ns =
-            iso_ns(&self.text(&LogCell::Field(index))).ok_or_else(|| self.refuse(cell, STAMP))?;
+    fn stamp_s(&self, cell: &LogCell) -> Result<f64> {
+        let stamp_ns = iso_ns(&self.text(cell)).ok_or_else(|| self.refuse(cell, STAMP))?;
         let first_ns = self.reader.first_ns.get().unwrap_or(stamp_ns);
         self.reader.first_ns.set(Some(first_ns));
         Ok(stamp_ns.saturating_sub(first_ns) as f64 / 1e9)
     }
 
     fn is_gap(&self, cell: &LogCell) -> bool {
-        match (cell, &self.source) {
-            (LogCell::Field(index), RowSource::Numbers(columns, row)) => {
-                columns[*index][*row].is_nan()
-            }
-            (cell, _) => {
-                let text = self.text(cell);
-                is_missing(&text)
-            }
+        match cell {
+            LogCell::Field(index) => self.table().is_gap(self.row, *index),
+            LogCell::Constant(..) => false,
         }
     }
 
     fn flag(&self, cell: &Option<LogCell>) -> Result<Option<bool>> {
         let Some(cell) = cell else { return Ok(None) };
-        let text = self.text(cell).to_ascii_lowercase();
-        match (text.as_str(), number(&text, self.reader.separator)) {
-            ("true", _) | (_, Some(1.0)) => Ok(Some(true)),
-            ("false", _) | (_, Some(0.0)) => Ok(Some(false)),
+        let value = match cell {
+            LogCell::Field(index) => self.table().number(self.row, *index),
+            LogCell::Constant(value, _) => Some(*value),
+        };
+        match (value, self.text(cell)) {
+            (Some(1.0), _) => Ok(Some(true)),
+            (Some(0.0), _) => Ok(Some(false)),
+            (None, text) if text.eq_ignore_ascii_case("true") => Ok(Some(true)),
+            (None, text) if text.eq_ignore_ascii_case("false") => Ok(Some(false)),
             _ => Err(self.refuse(cell, FLAG)),
         }
     }
 
     fn text(&self, cell: &LogCell) -> Cow<'_, str> {
         match cell {
-            LogCell::Field(index) => match &self.source {
-                RowSource::Text(fields) => Cow::Borrowed(&fields[*index]),
-                RowSource::Numbers(columns, row) if columns[*index][*row].is_nan() => "".into(),
-                RowSource::Numbers(columns, row) => columns[*index][*row].to_string().into(),
-            },
+            LogCell::Field(index) => self.table().text(self.row, *index),
             LogCell::Constant(value, _) => value.to_string().into(),
         }
     }
@@ -323,14 +279,14 @@ impl Cells<'_> {
 
     fn name(&self, cell: &LogCell) -> &str {
         match cell {
-            LogCell::Field(index) => &self.reader.names[*index],
+            LogCell::Field(index) => &self.table().names[*index],
             LogCell::Constant(..) => "a constant",
         }
     }
 
     fn place(&self, cell: &LogCell) -> Place {
         let line = match cell {
-            LogCell::Field(_) => self.at,
+            LogCell::Field(_) => self.table().line(self.row),
             LogCell::Constant(_, line) => *line,
         };
         Place::at(self.reader.path, line, cell.column())

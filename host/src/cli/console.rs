@@ -150,6 +150,7 @@ impl Console {
         }
     }
 
+    #[cfg(feature = "robot")]
     /// A place for lines that are written over again and again; shows only on a terminal, and no
     /// longer than it lives.
     pub fn live(&self) -> ProgressBar {

@@ -243,11 +243,13 @@ pub(super) fn of_options(error: Error) -> Error {
 }
 
 impl GainsArgs {
+    #[cfg(feature = "robot")]
     /// The model file.
     pub(super) fn model(&self) -> &Path {
         &self.model
     }
 
+    #[cfg(feature = "robot")]
     /// An option that serves the regulator on plain states alone, if one is given.
     pub(super) fn for_plain_states(&self) -> Option<&'static str> {
         let given = [
@@ -279,11 +281,13 @@ impl GainsArgs {
         names.next().map(|(_, name)| name)
     }
 
+    #[cfg(feature = "robot")]
     /// Whether the gains act on sums of angles.
     pub(super) fn is_integral(&self) -> bool {
         self.integral.is_some()
     }
 
+    #[cfg(feature = "robot")]
     /// Whether files are replaced.
     pub(super) fn force(&self) -> bool {
         self.force

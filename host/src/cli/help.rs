@@ -1,7 +1,10 @@
 //! `handstand --help`: the commands by the people who need them.
 
+#[cfg(feature = "robot")]
 use super::gains::GainsArgs;
-use clap::{Args as _, Command};
+#[cfg(feature = "robot")]
+use clap::Args as _;
+use clap::Command;
 use std::fmt::Write as _;
 
 /// What people do, and the commands for it in the order in which they are used.
@@ -27,6 +30,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Help", &["doctor", "completions", "man"]),
 ];
 
+#[cfg(feature = "robot")]
 /// A command that deploys, the options apart that only gains on plain states have.
 fn parted(command: Command) -> Command {
     let gains = GainsArgs::augment_args(Command::new("gains"));
@@ -44,6 +48,7 @@ fn parted(command: Command) -> Command {
 
 /// The command line with its commands grouped in the help.
 pub fn grouped(command: Command) -> Command {
+    #[cfg(feature = "robot")]
     let command = command
         .mut_subcommand("deploy", parted)
         .mut_subcommand("gains", |gains| gains.mut_subcommand("deploy", parted));

@@ -7,6 +7,7 @@ use handstand::fitting::{Horizon, free_parameters};
 use handstand::log::{LogFinding, LogFormat, LogRequest, LogSet, read_with_findings};
 use handstand::model::{LogColumns, ParameterPath};
 use handstand::motion::{Motion, Split};
+#[cfg(feature = "robot")]
 use handstand::output::number::{exact, short};
 use handstand::output::vacant;
 use handstand::study::compare_closed_loop;
@@ -14,6 +15,7 @@ use handstand::synth::StateFeedbackPlan;
 use handstand::{Error, Model, Result};
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "robot")]
 /// The value of an option, in the unit in which it is given.
 ///
 /// # Errors

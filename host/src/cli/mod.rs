@@ -6,6 +6,7 @@
 //! bug.
 
 mod add;
+#[cfg(feature = "robot")]
 mod balance;
 mod bus;
 mod challenge;
@@ -17,6 +18,7 @@ mod delays;
 mod demo;
 #[cfg(feature = "virtual-cm5")]
 mod demo_robot;
+#[cfg(feature = "robot")]
 mod deploy;
 mod diagnose;
 mod doctor;
@@ -129,7 +131,11 @@ pub enum Command {
     /// Add an effect to a model, its parameters fitted to logs
     Add(add::AddArgs),
     /// Synthesise LQR gains that balance a model, and export them for firmware
+    #[cfg(feature = "robot")]
     Gains(Box<deploy::GainsCommand>),
+    /// Synthesise LQR gains that balance a model, and export them for firmware
+    #[cfg(not(feature = "robot"))]
+    Gains(Box<gains::GainsArgs>),
     /// Study the closed loop's robustness by sweeps and Monte Carlo runs
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -171,10 +177,12 @@ pub enum Command {
     /// Replay a motion on servos
     Replay(replay::ReplayArgs),
     /// Balance the robot through the CM-5, and supervise it
+    #[cfg(feature = "robot")]
     Balance(Box<balance::BalanceArgs>),
     /// Measure the latency between PC and servos, stage by stage
     Latency(latency::LatencyArgs),
     /// Deploy a model's gains to the CM-5, and read them back
+    #[cfg(feature = "robot")]
     Deploy(Box<deploy::DeployArgs>),
     /// Flash firmware into the CM-5
     Flash(flash::FlashArgs),
@@ -204,7 +212,10 @@ impl Command {
             Command::Fit(args) => fit::run(args, console),
             Command::Drift(args) => drift::run(args, console),
             Command::Add(args) => add::run(args, console),
+            #[cfg(feature = "robot")]
             Command::Gains(args) => deploy::gains(args, console),
+            #[cfg(not(feature = "robot"))]
+            Command::Gains(args) => gains::run(args, console),
             Command::Study(command) => study::run(command, console),
             Command::Import(args) => import::run(args, console),
             Command::Model(model::ModelCommand::Export(args)) => model::export(args, console),
@@ -223,8 +234,10 @@ impl Command {
             Command::Excite(args) => excite::run(args, console),
             Command::Record(args) => record::run(args, console),
             Command::Replay(args) => replay::run(args, console),
+            #[cfg(feature = "robot")]
             Command::Balance(args) => balance::run(args, console),
             Command::Latency(args) => latency::run(args, console),
+            #[cfg(feature = "robot")]
             Command::Deploy(args) => deploy::run(args, console),
             Command::Flash(args) => flash::run(args, console),
             Command::Virtual(args) => virtual_robot::run(args, console),

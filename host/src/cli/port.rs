@@ -1,8 +1,8 @@
 //! The port of a command: a serial one, or a simulated one.
 
 use super::bus::garbled_words;
+use super::simulated::Attitude;
 use super::{Console, simulated};
-use handstand::deploy::balance::AttitudeSource;
 use handstand::link::{Answering, Protocol, Serial, SerialLink, Servos, Tap, id_ranges, ports};
 use handstand::{Error, Result};
 use handstand_shared::dynamixel::{ID_LIST_SYNTAX, ids};
@@ -55,7 +55,8 @@ impl Port {
     ///
     /// # Errors
     /// As [`Port::open`].
-    pub fn open_with_attitude(&self) -> Result<(AnyLink, Option<AttitudeSource>)> {
+    #[cfg(feature = "robot")]
+    pub fn open_with_attitude(&self) -> Result<(AnyLink, Option<Attitude>)> {
         let (link, attitude) = self.untapped()?;
         Ok((self.tapped(link)?, attitude))
     }
@@ -87,7 +88,7 @@ impl Port {
         self.protocol
     }
 
-    fn untapped(&self) -> Result<(AnyLink, Option<AttitudeSource>)> {
+    fn untapped(&self) -> Result<(AnyLink, Option<Attitude>)> {
         let name = match &self.port {
             Some(name) => name.clone(),
             None => only_port()?,

@@ -2,11 +2,16 @@
 
 use super::port::AnyLink;
 use handstand::Result;
-use handstand::deploy::balance::AttitudeSource;
+#[cfg(feature = "robot")]
+pub use handstand::deploy::balance::AttitudeSource as Attitude;
 #[cfg(feature = "virtual-cm5")]
 use handstand::link::virtual_cm5::{
     AdapterPort, Bus, Cm5Port, SimLink, attitude_sensor, set_up, spec,
 };
+
+/// No attitude comes with a port of a program without the robot.
+#[cfg(not(feature = "robot"))]
+pub type Attitude = std::convert::Infallible;
 
 /// Opens the simulated port that `text` describes, a CM-5's or an adapter's.
 ///
@@ -22,11 +27,11 @@ pub fn open(text: &str, is_cm5: bool) -> Result<AnyLink> {
 /// # Errors
 /// As [`open`].
 #[cfg(feature = "virtual-cm5")]
-pub fn open_with_attitude(text: &str, is_cm5: bool) -> Result<(AnyLink, Option<AttitudeSource>)> {
+pub fn open_with_attitude(text: &str, is_cm5: bool) -> Result<(AnyLink, Option<Attitude>)> {
     let spec = spec(text)?;
     let mut bus = set_up(&spec)?;
     let sensor = attitude_sensor(&mut bus, &spec)?;
-    Ok((link(bus, is_cm5), sensor.map(AttitudeSource::Simulated)))
+    Ok((link(bus, is_cm5), sensor.map(Attitude::Simulated)))
 }
 
 /// The port of a CM-5 in front of this bus, or of an adapter on it.
@@ -53,7 +58,7 @@ pub fn open(_text: &str, _is_cm5: bool) -> Result<AnyLink> {
 /// # Errors
 /// Always.
 #[cfg(not(feature = "virtual-cm5"))]
-pub fn open_with_attitude(_text: &str, _is_cm5: bool) -> Result<(AnyLink, Option<AttitudeSource>)> {
+pub fn open_with_attitude(_text: &str, _is_cm5: bool) -> Result<(AnyLink, Option<Attitude>)> {
     Err(absent())
 }
 

@@ -1,12 +1,11 @@
 //! What the program says, word for word.
 //!
-//! `GOLDEN=write cargo test --test it golden` rewrites the transcripts; read their difference
-//! before keeping it.
+//! `INSTA_UPDATE=always cargo test --test it golden` rewrites the transcripts,
+//! `tests/data/NAME.snap`; read their difference before keeping it.
 
 use crate::common::Bench;
-use std::path::Path;
 
-/// Says what the command lines say and compares it with `tests/data/NAME.txt`.
+/// Says what the command lines say and compares it with the transcript of this name.
 fn golden(bench: &Bench, name: &str, lines: &[&str]) {
     let mut said = String::new();
     for line in lines {
@@ -16,21 +15,11 @@ fn golden(bench: &Bench, name: &str, lines: &[&str]) {
     }
     // Windows writes the program's name with its ending.
     let said = said.replace("handstand.exe", "handstand");
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/{name}.txt"));
-    if std::env::var_os("GOLDEN").is_some_and(|what| what == "write") {
-        std::fs::write(&file, &said).unwrap();
-    }
-    let kept = std::fs::read_to_string(&file)
-        .unwrap()
-        .replace("\r\n", "\n");
-    let differs = kept
-        .lines()
-        .zip(said.lines())
-        .find(|(kept, said)| kept != said);
-    assert!(
-        kept == said,
-        "{name}.txt: first difference {differs:#?}\n{said}"
-    );
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../data");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, said));
 }
 
 /// A folder with the fixtures.

@@ -164,6 +164,7 @@ fn without_its_features_the_library_pulls_neither_lab_nor_firmware() {
         "handstand-cm5-sim",
         "handstand-firmware",
         "handstand-lab",
+        "handstand-robot",
         "axum",
         "parquet",
         "hdf5-reader",

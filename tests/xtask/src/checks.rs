@@ -22,8 +22,16 @@ pub const CHECKS: &[Check] = &[
             "warnings",
         ])
     }),
-    ("cargo check --no-default-features", || {
-        runs(&["check", "--package", "handstand", "--no-default-features"])
+    ("cargo clippy --no-default-features", || {
+        runs(&[
+            "clippy",
+            "--package",
+            "handstand",
+            "--no-default-features",
+            "--",
+            "-D",
+            "warnings",
+        ])
     }),
     ("cargo doc", || runs(&["doc", "--workspace", "--no-deps"])),
 ];

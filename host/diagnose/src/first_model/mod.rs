@@ -37,6 +37,9 @@ const SHORT_S: f64 = 0.5;
 /// Samples that starts are compared on, and that the best is fitted to.
 const FEW: usize = 2000;
 const SAMPLES: usize = 6000;
+/// Joints whose values are estimated at once: what a fit of all takes grows with the fourth power
+/// of their number, to hours for ten and more.
+const MOST_JOINTS: usize = 8;
 /// Iterations that tell a promising start from a hopeless one.
 const SCREENING: usize = 6;
 /// Iterations that the most promising goes on for.
@@ -62,7 +65,7 @@ struct FittedMeaning {
 
 /// Replaces a draft's guesses by what its log tells, adds plain friction, and notes each estimate
 /// with its 95 % interval among the draft's guesses. A log that is refused, or in which nothing
-/// moves, leaves the draft as it is, and a note says why.
+/// moves, or of more than [`MOST_JOINTS`] joints leaves the draft as it is, and a note says why.
 ///
 /// `stop` abandons it, `heard` hears how far it has come.
 ///
@@ -86,6 +89,15 @@ pub fn estimate(
             return Ok(());
         }
     };
+    if drafted.link_count() > MOST_JOINTS {
+        let joints = drafted.link_count();
+        let why = format!(
+            "{joints} joints are too many to estimate at once: free a few values at a time and \
+             `handstand fit`"
+        );
+        draft.note("values", "guesses alone", &why);
+        return Ok(());
+    }
     let mut rubbing = rubbing(&drafted, &motions);
     let course = Course::new(stop, heard);
     let Some(best) = best_meaning(&rubbing, draft, &motions, &course) else {

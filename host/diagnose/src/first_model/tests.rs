@@ -43,3 +43,46 @@ fn a_bench_s_own_figures_stay_as_the_log_says() {
     let mass = origins.iter().find(|value| value.path == "link1.mass_kg");
     assert_eq!(mass.unwrap().origin, crate::log::init::Origin::Given);
 }
+
+/// A fit of all values of as many joints takes hours.
+#[test]
+fn a_draft_of_many_joints_keeps_its_guesses_and_says_so() {
+    let joints = MOST_JOINTS + 1;
+    let names = (1..=joints).map(|joint| format!(",q{joint}_rad,goal{joint}_rad"));
+    let mut text = format!("time_s{}\n", names.collect::<String>());
+    for k in 0..60 {
+        let t = 0.02 * f64::from(k);
+        let cell = |joint: usize| {
+            let (rate, phase) = (2.0 + 0.3 * joint as f64, joint as f64);
+            let (goal, angle) = ((rate * t + phase).sin(), (rate * (t - 0.04) + phase).sin());
+            format!(",{},{}", 0.4 * angle, 0.4 * goal)
+        };
+        text += &format!("{t}{}\n", (0..joints).map(cell).collect::<String>());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    std::fs::write(&path, text).unwrap();
+    let request = LogRequest::whole(path);
+    let log = RawLog::read_request(&request).unwrap();
+    let mut draft = Draft::of(&log, "a.csv", None).unwrap();
+    let (stop, heard) = (
+        StopSwitch::default(),
+        std::sync::atomic::AtomicUsize::new(0),
+    );
+    let hears = |_| {
+        heard.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    };
+    estimate(&mut draft, &request, &stop, &hears).unwrap();
+    let said = draft.guesses.last().unwrap();
+    assert_eq!(
+        (said.what.as_str(), said.guess.as_str()),
+        ("values", "guesses alone")
+    );
+    assert!(
+        said.why
+            .starts_with("9 joints are too many to estimate at once"),
+        "{}",
+        said.why
+    );
+    assert_eq!(heard.into_inner(), 0);
+}

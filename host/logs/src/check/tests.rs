@@ -10,7 +10,7 @@ use crate::motion::Motion;
 use crate::to_csv;
 use handstand_model::fixture::{columns, first, model, motion, position_drive};
 
-fn found(text: &str, model: &Model) -> Vec<LogFinding> {
+fn found(text: &(impl AsRef<[u8]> + ?Sized), model: &Model) -> Vec<LogFinding> {
     let log = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
     std::fs::write(log.path(), text).unwrap();
     check(&[LogRequest::whole(log.path())], model).unwrap()

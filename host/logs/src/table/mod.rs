@@ -1,8 +1,7 @@
-//! Logs that are tables of numbers already: MCAP, rosbag2, MATLAB, Parquet.
+//! Every log as one table: columns by name, of which a model file says what they mean.
 //!
-//! Each becomes columns by name, which the model file then reads as it reads those of CSV. A value
-//! that is not there is not a number. Sizes that a file states are believed only as far as its
-//! bytes can bear them.
+//! A value that is not there is not a number. Sizes that a file states are believed only as far as
+//! its bytes can bear them.
 #![cfg_attr(
     not(all(feature = "matlab", feature = "parquet", feature = "ros")),
     allow(
@@ -26,10 +25,18 @@ mod rosbag;
 mod sqlite;
 #[cfg(all(test, feature = "matlab", feature = "parquet", feature = "ros"))]
 mod tests;
+mod text;
 
+pub(super) use text::TextCells;
+
+use super::bam::{self, BenchFigures};
+use super::cell::{is_missing, number};
+use super::csv;
 use super::foreign::{HEAD, foreign};
 use super::format::LogFormat;
+use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
+use crate::model::LogColumns;
 use crate::output::number::hex;
 use bytes::Bytes;
 use sha2::{Digest, Sha256};
@@ -51,41 +58,82 @@ pub(super) struct LogTable {
     pub names: Vec<String>,
     /// As long as each other.
     pub columns: Vec<Vec<f64>>,
-    /// Numbers for the whole file.
-    pub constants: Vec<(String, f64)>,
+    /// Numbers for the whole file, and the line that says them.
+    pub constants: Vec<(String, f64, usize)>,
     /// Columns that hold no numbers a row, and what they hold.
     pub left_out: Vec<(String, Cow<'static, str>)>,
     /// What looks wrong with the file, and what to do about it.
     pub warning: Option<(&'static str, &'static str)>,
     /// Whether the format says that angles are rad, speeds rad/s and torques N m.
     pub is_si: bool,
+    /// The bench that recorded it, where the file says.
+    pub bench: Option<BenchFigures>,
     /// SHA-256 of the file, lower-case hexadecimal.
     pub sha256: String,
+    /// The first row's number in the file.
+    pub first: usize,
+    /// Whether rows are entries of a list, which have no line and column.
+    pub is_entries: bool,
+    /// What text says beyond numbers.
+    pub text: Option<TextCells>,
+}
+
+/// Where a quantity's value comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum LogCell {
+    /// Field of each row, counted from 0.
+    Field(usize),
+    /// One number for the whole file, from the comment on this line.
+    Constant(f64, usize),
+}
+
+impl LogCell {
+    /// The field counted from 1, as places count; 1 for a constant.
+    pub fn column(&self) -> usize {
+        match self {
+            LogCell::Field(index) => index + 1,
+            LogCell::Constant(..) => 1,
+        }
+    }
 }
 
 impl LogTable {
-    /// Reads a file in one of these formats; `time` names its column of time, where it is known:
-    /// a file of variables of several lengths gives those as long as that.
+    /// Reads a file of any format; `columns` are the model's, where they are known: of variables of
+    /// several lengths those as long as its time are given, of text its flags as they are written.
     ///
     /// # Errors
     /// What the system refuses, and what is no such file.
-    pub fn read(path: &Path, format: LogFormat, time: Option<&str>) -> Result<LogTable> {
-        let refused = |source| Error::file(path, "read", source);
-        let length = std::fs::metadata(path).map_err(refused)?.len();
-        let file = TableFile { path };
-        if length > LARGEST {
-            return Err(file.wrong("more than 4 GiB", "cut the log into shorter ones"));
+    pub fn read(path: &Path, format: LogFormat, columns: Option<&LogColumns>) -> Result<LogTable> {
+        if format == LogFormat::Csv {
+            return csv::read(path, columns);
         }
-        let bytes = Bytes::from(std::fs::read(path).map_err(refused)?);
-        if let Some(error) = foreign(path, &bytes[..bytes.len().min(HEAD)], format) {
-            return Err(error);
-        }
+        let bytes = LogTable::bytes(path, format)?;
+        let time = columns.map(|columns| columns.time.name.as_str());
         let digest = || hex(Sha256::digest(&bytes));
-        let (table, sha256) = rayon::join(|| Self::of(bytes.clone(), file, format, time), digest);
+        let read = || Self::of(bytes.clone(), TableFile { path }, format, time);
+        let (table, sha256) = rayon::join(read, digest);
         Ok(LogTable { sha256, ..table? })
     }
 
-    /// Reads the bytes of a file.
+    /// The bytes of a file of this format.
+    ///
+    /// # Errors
+    /// What the system refuses; more than 4 GiB; the file of another format.
+    pub fn bytes(path: &Path, format: LogFormat) -> Result<Bytes> {
+        let refused = |source| Error::file(path, "read", source);
+        let length = std::fs::metadata(path).map_err(refused)?.len();
+        if length > LARGEST {
+            let remedy = "cut the log into shorter ones";
+            return Err(TableFile { path }.wrong("more than 4 GiB", remedy));
+        }
+        let bytes = Bytes::from(std::fs::read(path).map_err(refused)?);
+        match foreign(path, &bytes[..bytes.len().min(HEAD)], format) {
+            Some(error) => Err(error),
+            None => Ok(bytes),
+        }
+    }
+
+    /// Reads the bytes of a file that is no text.
     ///
     /// # Errors
     /// What is no such file.
@@ -110,13 +158,107 @@ impl LogTable {
             LogFormat::Parquet => Err(file.left_out("parquet")),
             #[cfg(not(feature = "ros"))]
             LogFormat::Mcap | LogFormat::Rosbag => Err(file.left_out("ros")),
-            LogFormat::Csv | LogFormat::Bam => Err(file.wrong("not a table", "name a log")),
+            LogFormat::Bam => bam::read_alone(&bytes, file),
+            LogFormat::Csv => Err(file.wrong("not a table", "name a log")),
         }
     }
 
     /// Rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// Where the column of this name is.
+    ///
+    /// # Errors
+    /// No such column, with those found and the likeliest meant; a name that stands there twice.
+    pub fn cell(&self, path: &Path, name: &str) -> Result<LogCell> {
+        let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
+        match (found.next(), found.next()) {
+            (Some(_), Some(second)) => {
+                let column = name.to_string();
+                let place = Place::at(path, self.names_line(), second + 1);
+                Err(Error::refused(place, LogReason::ColumnTwice { column }))
+            }
+            (Some(index), None) => Ok(LogCell::Field(index)),
+            (None, _) => match self.constants.iter().find(|(key, ..)| key == name) {
+                Some((_, value, line)) => Ok(LogCell::Constant(*value, *line)),
+                None => Err(self.missing(path, name)),
+            },
+        }
+    }
+
+    fn missing(&self, path: &Path, name: &str) -> Error {
+        let place = Place::at(path, self.names_line(), 1);
+        let column = name.to_string();
+        if let Some((_, holds)) = self.left_out.iter().find(|(left_out, _)| left_out == name) {
+            let holds = holds.clone();
+            return Error::refused(place, LogReason::ColumnLeftOut { column, holds });
+        }
+        let plain = |name: &str| -> String {
+            let letters = name.chars().filter(|letter| letter.is_alphanumeric());
+            letters.flat_map(char::to_lowercase).collect()
+        };
+        let likeness = |known: &str| strsim::jaro_winkler(&plain(known), &plain(name));
+        let constants = self.constants.iter().map(|(key, ..)| key);
+        let nearest = self
+            .names
+            .iter()
+            .chain(constants)
+            .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+            .filter(|known| likeness(known) > 0.8);
+        let reason = LogReason::NoColumn {
+            column,
+            nearest: nearest.cloned(),
+            found: self.names.clone(),
+        };
+        Error::refused(place, reason)
+    }
+
+    fn names_line(&self) -> usize {
+        self.text.as_ref().map_or(1, |text| text.names_line)
+    }
+
+    /// Line of a row, counted from 1; of what has none its number.
+    pub fn line(&self, row: usize) -> usize {
+        match &self.text {
+            Some(text) => text.lines[row],
+            None => self.first + row + 1,
+        }
+    }
+
+    /// What is wrong with a row as a whole, and the field that shows it, counted from 1.
+    pub fn fault(&self, row: usize) -> Option<&(usize, LogReason)> {
+        self.text.as_ref()?.fault_of(row)
+    }
+
+    fn written(&self, row: usize, column: usize) -> Option<&str> {
+        self.text.as_ref()?.written(row, column)
+    }
+
+    /// The number in a cell, if one is.
+    pub fn number(&self, row: usize, column: usize) -> Option<f64> {
+        match (&self.text, self.written(row, column)) {
+            (Some(text), Some(written)) => number(written, text.separator),
+            _ => Some(self.columns[column][row]).filter(|value| !value.is_nan()),
+        }
+    }
+
+    /// A cell as it is written.
+    pub fn text(&self, row: usize, column: usize) -> Cow<'_, str> {
+        match (self.written(row, column), self.columns[column][row]) {
+            (Some(written), _) => written.into(),
+            (None, value) if value.is_nan() => "".into(),
+            (None, value) => value.to_string().into(),
+        }
+    }
+
+    /// Whether a cell says that there is no value.
+    pub fn is_gap(&self, row: usize, column: usize) -> bool {
+        match self.written(row, column) {
+            Some(written) => is_missing(written),
+            None => self.columns[column][row].is_nan(),
+        }
     }
 }
 

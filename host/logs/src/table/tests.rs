@@ -107,7 +107,7 @@ fn matlab_files_are_read_to_the_last_bit() {
             assert_bits(&table, column, values);
         }
         assert_eq!(table.names.len(), expected.len(), "{:?}", table.names);
-        assert_eq!(table.constants, [("supply_v".to_string(), 11.7)]);
+        assert_eq!(table.constants, [("supply_v".to_string(), 11.7, 1)]);
     }
 }
 
@@ -158,8 +158,8 @@ fn what_is_not_read_of_parquet_is_said() {
         "{}",
         said(&encrypted)
     );
-    let columns = crate::header::LogHeader::of_table(&path("a"), &table("arrow.parquet"));
-    let missing = columns.cell("ragged").unwrap_err().to_string();
+    let columns = table("arrow.parquet");
+    let missing = columns.cell(&path("a"), "ragged").unwrap_err().to_string();
     assert!(
         missing.contains("'ragged' holds lists of different lengths"),
         "{missing}"

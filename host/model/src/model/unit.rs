@@ -92,6 +92,15 @@ impl Dimension {
         units.filter(|unit| unit.si.is_finite())
     }
 
+    /// The SI unit.
+    pub fn si(self) -> Unit {
+        Unit {
+            name: self.si_unit(),
+            dimension: self,
+            si: 1.0,
+        }
+    }
+
     /// Name of the SI unit; empty for a share.
     pub fn si_unit(self) -> &'static str {
         let mut units = self.plain_units().filter(|unit| unit.name != "1");

@@ -13,6 +13,22 @@ use crate::motion::{Motion, excerpts};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
+/// Joints of a short chain. How errors grow in a reading takes twice as many runs as there are
+/// joints, a run goes with their number, and so do the corrections: of a long chain a trial must do
+/// with fewer samples and what those runs cost must be spared.
+pub(super) const SHORT_CHAIN: usize = 4;
+
+/// Whether a model's chain is long.
+pub(super) fn is_long(model: &Model) -> bool {
+    model.link_count() > SHORT_CHAIN
+}
+
+/// Of so many samples those that a chain as long as the model's is judged on.
+pub(super) fn affordable(samples: usize, model: &Model) -> usize {
+    let joints = model.link_count().max(SHORT_CHAIN);
+    samples * SHORT_CHAIN.pow(3) / joints.pow(3)
+}
+
 /// Samples looked at with each correction, and with each of the many values of a continuous one.
 pub(super) const SAMPLES: usize = 6000;
 const SAMPLES_CONTINUOUS: usize = 2000;
@@ -22,6 +38,8 @@ const JUDGED: usize = 6;
 const UNITS: usize = 2;
 /// An error ratio this high, from guessed start states, is not looked at again.
 const HOPELESS: f64 = 1.05;
+/// The same of a long chain, where it takes much to look again.
+const HOPELESS_LONG: f64 = 0.9;
 /// Faults that one log may have at once.
 const ROUNDS: usize = 3;
 
@@ -63,7 +81,7 @@ fn fault(model: &Model, motions: &[Motion]) -> Option<LogFault> {
         plausible_time(model, motions)
     } else {
         // Few samples: as declared, each may last a thousand integration steps.
-        let few = excerpts(motions, SAMPLES_CONTINUOUS);
+        let few = excerpts(motions, affordable(SAMPLES_CONTINUOUS, model));
         let bench = CorrectionTrial::of_doubtful_time(model, few);
         let doubtful = doubtful.into_iter();
         let trials = doubtful.filter_map(|correction| bench.tried(correction, Effort::Guess));
@@ -93,35 +111,52 @@ const FREE_NUMBER: f64 = 0.7;
 const AS_GOOD: f64 = 1.15;
 
 fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
-    let few = ModelReading::new(model.clone(), excerpts(motions, SAMPLES_CONTINUOUS));
+    let samples = |most: usize| excerpts(motions, affordable(most, model));
+    let few = ModelReading::new(model.clone(), samples(SAMPLES_CONTINUOUS));
+    let all = samples(SAMPLES);
     let model = &coarsened(model, &few.data);
-    let bench = CorrectionTrial::new(model, excerpts(motions, SAMPLES));
+    let bench = CorrectionTrial::new(model, all);
     let few = CorrectionTrial::new(model, few.data.motions);
     let mut corrections = alternatives(model, motions);
-    corrections.extend(drives(&few));
+    if is_long(model) {
+        // What a wrong value or friction may do as well takes fits of all values to tell.
+        corrections.retain(|c| strength_of(c).is_none() && rivals_friction(c).is_none());
+    } else {
+        corrections.extend(drives(&few));
+    }
     corrections.extend(continuous(&few));
     judged(&bench, corrections)
 }
 
 /// Those of the corrections that clearly lower the error.
 fn judged(bench: &CorrectionTrial, corrections: Vec<Correction>) -> Vec<Trial> {
+    let is_long = is_long(&bench.model);
+    let hopeless = if is_long { HOPELESS_LONG } else { HOPELESS };
     let screened = corrections.into_par_iter();
     let mut screened: Vec<Trial> = screened
         .filter_map(|correction| bench.tried(correction, Effort::Guess))
-        .filter(|trial| trial.ratio() < HOPELESS)
+        .filter(|trial| trial.ratio() < hopeless)
         .collect();
     screened.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
     let judged = most_promising(screened).into_par_iter();
     let judged = judged.filter_map(|trial| {
         // The file's free values are a start: each reading is judged with those that suit it.
-        let refitted = bench.tried(trial.correction.clone(), Effort::Values)?;
+        let fitted = if is_long {
+            Effort::Starts
+        } else {
+            Effort::Values
+        };
+        let refitted = bench.tried(trial.correction.clone(), fitted)?;
         let is_another_drive = matches!(refitted.correction, Correction::Drive(..));
         let suits = refitted.ratio() < MOST_OF_ANOTHER_DRIVE || refitted.after < LITTLE;
         if !least(bench, &refitted.correction).allows(&refitted) || is_another_drive && !suits {
             return None;
         }
-        let given = bench.tried(trial.correction, Effort::Starts)?;
-        (given.ratio() < 1.0).then_some(refitted)
+        let does_as_given = is_long
+            || bench
+                .tried(trial.correction, Effort::Starts)
+                .is_some_and(|given| given.ratio() < 1.0);
+        does_as_given.then_some(refitted)
     });
     let mut judged: Vec<Trial> = judged.collect();
     let (mut off, mut rubbing) = (BTreeMap::new(), BTreeMap::new());
@@ -158,6 +193,18 @@ const LITTLE: f64 = 0.08;
 
 const BEATS: f64 = 0.999;
 
+/// The joint of which a correction changes how strong the input is.
+fn strength_of(correction: &Correction) -> Option<usize> {
+    match correction {
+        Correction::Drive(joint, ..) => Some(*joint),
+        Correction::Unit(columns) => match columns.as_slice() {
+            [(LogColumn::Input(joint), _)] => Some(*joint),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
 /// Whether what only changes how strong an input is leaves less than one wrong value of
 /// the file does: a mass, a stall torque, a gear, which diagnosis finds. `off` holds what one
 /// value leaves for the joints that were asked for. What does the same but for rounding does not
@@ -167,13 +214,8 @@ fn beats_a_wrong_value(
     trial: &Trial,
     off: &mut BTreeMap<usize, Option<f64>>,
 ) -> bool {
-    let joint = match &trial.correction {
-        Correction::Drive(joint, ..) => *joint,
-        Correction::Unit(columns) => match columns.as_slice() {
-            [(LogColumn::Input(joint), _)] => *joint,
-            _ => return true,
-        },
-        _ => return true,
+    let Some(joint) = strength_of(&trial.correction) else {
+        return true;
     };
     let fitted = off
         .entry(joint)

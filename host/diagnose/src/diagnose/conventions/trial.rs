@@ -3,6 +3,7 @@
 use super::correction::{Correction, LogColumn};
 use super::plain_friction::left_by_friction;
 use super::rating::{ModelReading, Rating};
+use super::search::is_long;
 use crate::diagnose::values::values_of;
 use crate::effects::TORQUE_SCALE;
 use crate::fitting::Candidate;
@@ -160,7 +161,7 @@ impl CorrectionTrial {
             let cut_as_given = reading.growing_like(model.clone(), motions.clone());
             let cut_as_given = cut_as_given.cut_as(&reading.data.windows).rated(effort);
             let trial = Trial::new(correction.clone(), rating, &cut_as_given);
-            if trial.as_ref().is_some_and(|t| t.ratio() > FAR_WORSE) {
+            if is_long(&self.model) || trial.as_ref().is_some_and(|t| t.ratio() > FAR_WORSE) {
                 return trial;
             }
         }

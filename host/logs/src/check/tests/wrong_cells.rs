@@ -25,7 +25,7 @@ fn stamp(index: usize) -> String {
 
 type Refused = (&'static str, (Option<usize>, Option<usize>), String, String);
 
-fn refused(text: &str, model: &Model) -> Vec<Refused> {
+fn refused(text: &(impl AsRef<[u8]> + ?Sized), model: &Model) -> Vec<Refused> {
     let all = found(text, model);
     let refused = all.into_iter().filter(|f| f.severity == Severity::Refuse);
     let told = refused.map(|f| {
@@ -145,4 +145,27 @@ fn single_cells_keep_their_lines_beside_a_column() {
         .collect();
     assert_eq!(kinds, [("column", Some(3)), ("cell", Some(2))]);
     assert!(all[0].2.ends_with("and 598 more lines like it"), "{all:?}");
+}
+
+#[test]
+fn a_byte_that_is_no_text_costs_its_row_and_what_lies_behind_is_judged() {
+    let broken = changed(1, |index, field| match index {
+        4 => "@".into(),
+        9 => "x".into(),
+        _ => field.into(),
+    });
+    let bytes: Vec<u8> = broken
+        .bytes()
+        .map(|b| if b == b'@' { 0xff } else { b })
+        .collect();
+    let all = refused(&bytes, &servo());
+    let told: Vec<_> = all
+        .iter()
+        .map(|(_, place, what, _)| (*place, what.as_str()))
+        .collect();
+    let expected = [
+        ((Some(5), Some(2)), "not UTF-8: byte 0xff"),
+        ((Some(10), Some(2)), "q: 'x' is not a number"),
+    ];
+    assert_eq!(told, expected);
 }

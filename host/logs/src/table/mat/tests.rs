@@ -2,7 +2,6 @@
 //! last bit, and what is left of them after damage.
 
 use super::variables::MatVariables;
-use crate::header::LogHeader;
 use crate::table::tests::{assert_bits, expected, of, path, table};
 use rand::{Rng as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -20,14 +19,14 @@ fn files_of_version_73_are_read_to_the_last_bit() {
             assert_bits(&table, column, values);
         }
         assert_eq!(table.names.len(), expected.len(), "{:?}", table.names);
-        let supply = ("supply_v".to_string(), 11.7);
+        let supply = ("supply_v".to_string(), 11.7, 1);
         assert!(table.constants.contains(&supply), "{:?}", table.constants);
     }
     // A group of many variables, which is stored in another way than one of few.
     for name in &FILES[1..] {
         let constants = table(name).constants;
         assert_eq!(constants.len(), 41);
-        assert!(constants.contains(&("data.k39".to_string(), 19.5)));
+        assert!(constants.contains(&("data.k39".to_string(), 19.5, 1)));
     }
 }
 
@@ -64,8 +63,8 @@ fn what_is_not_read_of_a_matlab_file_is_said() {
         ("v7.mat", "short", "another number of rows"),
     ];
     for (name, column, holds) in told {
-        let columns = LogHeader::of_table(&path(name), &table(name));
-        let said = columns.cell(column).unwrap_err().to_string();
+        let columns = table(name);
+        let said = columns.cell(&path(name), column).unwrap_err().to_string();
         let both = said.contains(&format!("'{column}' holds")) && said.contains(holds);
         assert!(both, "{name}: {said}");
     }

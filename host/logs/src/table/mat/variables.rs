@@ -100,7 +100,7 @@ impl MatVariables {
         };
         for variable in self.variables {
             if variable.rows == 1 && variable.columns == 1 {
-                table.constants.push((variable.name, variable.values[0]));
+                table.constants.push((variable.name, variable.values[0], 1));
             } else if variable.rows != rows {
                 let own = variable.rows;
                 let holds =

@@ -1,4 +1,7 @@
 use super::*;
+use crate::motion::MotionSource;
+use crate::sim::{Plant, PlantMemory, StartState, predict};
+use std::path::Path;
 
 #[test]
 fn units_of_one_input_do_not_crowd_out_other_corrections() {
@@ -17,4 +20,72 @@ fn units_of_one_input_do_not_crowd_out_other_corrections() {
     sorted.extend([input(1), reversed.clone()]);
     let kept = most_promising(sorted);
     assert_eq!(kept, [input(0), input(0), input(1), reversed]);
+}
+
+/// A chain of six servos that follow goals of their own speeds, as its model says.
+fn long_chain() -> (Model, Motion) {
+    let mut text = String::from("[rig]\nname = \"long\"\nangle_zero = \"hanging\"\n");
+    for _ in 0..6 {
+        text += "[[link]]\nlength_m = 0.1\ncom_m = 0.05\nmass_kg = 0.05\ninertia_kg_m2 = 2e-3\n\
+                 [[joint]]\ndrive = \"position\"\ngain_per_rad = 3.0\nstall_torque_nm = 0.8\n\
+                 no_load_speed_rad_s = 6.0\n";
+    }
+    text += "[log]\ntime = { column = \"t\", unit = \"s\" }\n";
+    for joint in 1..=6 {
+        text += &format!(
+            "[[log.joint]]\nposition = {{ column = \"q{joint}\", unit = \"rad\" }}\n\
+             input = {{ column = \"goal{joint}\", unit = \"rad\" }}\n"
+        );
+    }
+    let model = Model::parse(&text, Path::new("long.toml")).unwrap();
+    let time_s: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k)).collect();
+    let goal = |joint: usize| {
+        let rate = 1.5 + 0.7 * joint as f64;
+        let goals = time_s.iter().map(|t| 0.5 * (rate * t).sin());
+        Some(goals.collect())
+    };
+    let mut motion = Motion {
+        name: "long".into(),
+        source: MotionSource {
+            path: "long.csv".into(),
+            sha256: String::new(),
+            lines: (2, 301),
+        },
+        position_rad: vec![vec![0.0; 300]; 6],
+        velocity_rad_s: vec![None; 6],
+        rate_rad_s: vec![None; 6],
+        input: (0..6).map(goal).collect(),
+        supply_v: None,
+        torque_on: None,
+        payload_kg: 0.0,
+        turned: false,
+        time_s,
+    };
+    let start = StartState {
+        angle_rad: vec![0.0; 6],
+        speed_rad_s: vec![0.0; 6],
+        reading_slope: None,
+    };
+    let plant = Plant::new(&model, &motion);
+    let mut readings = vec![0.0; 6 * 300];
+    let memory = &mut PlantMemory::default();
+    predict(&plant, &motion, 0..300, &start, memory, &mut readings);
+    for (position, read) in motion.position_rad.iter_mut().zip(readings.chunks(300)) {
+        *position = read.to_vec();
+    }
+    (model, motion)
+}
+
+/// All samples and a look at each reading's growth would take minutes.
+#[test]
+fn a_long_chain_is_judged_on_what_it_can_afford() {
+    let (model, mut motion) = long_chain();
+    assert!(is_long(&model));
+    assert_eq!(affordable(SAMPLES, &model), 1777);
+    assert_eq!(search(&model, std::slice::from_ref(&motion)), []);
+    motion.position_rad[3].iter_mut().for_each(|q| *q = -*q);
+    let found = search(&model, &[motion]);
+    let corrections: Vec<_> = found.iter().map(|fault| &fault.trial.correction).collect();
+    let reversed = Correction::Reverse(vec![LogColumn::Position(3)]);
+    assert_eq!(corrections, [&reversed]);
 }
