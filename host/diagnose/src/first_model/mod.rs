@@ -65,7 +65,7 @@ struct FittedMeaning {
 
 /// Replaces a draft's guesses by what its log tells, adds plain friction, and notes each estimate
 /// with its 95 % interval among the draft's guesses. A log that is refused, or in which nothing
-/// moves, or of more than [`MOST_JOINTS`] joints leaves the draft as it is, and a note says why.
+/// moves, or of more than eight joints leaves the draft as it is, and a note says why.
 ///
 /// `stop` abandons it, `heard` hears how far it has come.
 ///
