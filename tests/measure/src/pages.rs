@@ -102,9 +102,7 @@ pub fn command(page: &str) -> Result<Vec<String>, String> {
 
 /// Rows of a page, or of a table as it is printed: the cells of each line with a blank between.
 pub fn rows(text: &str) -> Vec<String> {
-    let lines = text
-        .lines()
-        .map(|line| line.replace('|', " ").replace('\\', " "));
+    let lines = text.lines().map(|line| line.replace(['|', '\\'], " "));
     let rows = lines.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
     rows.filter(|row| !row.is_empty()).collect()
 }
