@@ -3,7 +3,6 @@
 
 use crate::dynamics::Dense;
 use crate::sim::Plant;
-use std::any::Any;
 
 /// What advances the plant.
 #[derive(Debug, Clone)]
@@ -37,18 +36,6 @@ impl Equations {
             _ => None,
         }
         .unwrap_or(Equations::General)
-    }
-
-    /// The dense equations, if they advance the plant and it has `N` links.
-    pub(super) fn dense<const N: usize>(&self) -> Option<&Dense<N>> {
-        let dense: &dyn Any = match self {
-            Equations::One(dense) => dense,
-            Equations::Two(dense) => dense,
-            Equations::Three(dense) => dense,
-            Equations::Four(dense) => dense,
-            Equations::General => return None,
-        };
-        dense.downcast_ref()
     }
 }
 

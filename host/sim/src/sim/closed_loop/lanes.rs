@@ -15,10 +15,22 @@ const WIDTH: usize = 4;
 /// Finishes all runs; outcomes in their order.
 pub(super) fn finish(runs: Vec<Run<'_>>) -> Vec<Outcome> {
     match runs.first().map(|run| &run.closed.plant.equations) {
-        Some(Equations::One(_)) => in_lanes::<1>(runs),
-        Some(Equations::Two(_)) => in_lanes::<2>(runs),
-        Some(Equations::Three(_)) => in_lanes::<3>(runs),
-        Some(Equations::Four(_)) => in_lanes::<4>(runs),
+        Some(Equations::One(_)) => in_lanes(runs, |it| match it {
+            Equations::One(dense) => Some(dense),
+            _ => None,
+        }),
+        Some(Equations::Two(_)) => in_lanes(runs, |it| match it {
+            Equations::Two(dense) => Some(dense),
+            _ => None,
+        }),
+        Some(Equations::Three(_)) => in_lanes(runs, |it| match it {
+            Equations::Three(dense) => Some(dense),
+            _ => None,
+        }),
+        Some(Equations::Four(_)) => in_lanes(runs, |it| match it {
+            Equations::Four(dense) => Some(dense),
+            _ => None,
+        }),
         Some(Equations::General) | None => alone(runs),
     }
 }
@@ -51,8 +63,12 @@ impl<const N: usize> LaneRun<'_, N> {
     }
 }
 
-fn in_lanes<'a, const N: usize>(runs: Vec<Run<'a>>) -> Vec<Outcome> {
-    let dense = |run: &Run<'a>| run.closed.plant.equations.dense::<N>();
+/// Finishes runs of `N` links, whose dense equations are `of` those of their plants.
+fn in_lanes<'a, const N: usize>(
+    runs: Vec<Run<'a>>,
+    of: fn(&Equations) -> Option<&Dense<N>>,
+) -> Vec<Outcome> {
+    let dense = |run: &Run<'a>| of(&run.closed.plant.equations);
     let mut outcomes = vec![None; runs.len()];
     if runs.len() < 2 || runs.iter().any(|run| dense(run).is_none()) {
         return alone(runs);
