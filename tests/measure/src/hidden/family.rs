@@ -146,6 +146,11 @@ impl Family {
         }
     }
 
+    /// Whether its files are a little wrong everywhere.
+    pub fn is_approximate(self) -> bool {
+        self.stated().is_some()
+    }
+
     /// Whether its logs are recordings of the virtual robot.
     pub fn is_recorded(self) -> bool {
         matches!(self, Family::Robot | Family::NothingRobot)
