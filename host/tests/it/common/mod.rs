@@ -74,7 +74,8 @@ impl Bench {
             .current_dir(self.folder.path())
             .env("NO_COLOR", "1")
             .envs(environment.iter().map(|(name, value)| (name, value)))
-            .timeout(std::time::Duration::from_secs(120))
+            // Ends what hangs: the longest run computes for a minute, which other tests stretch.
+            .timeout(std::time::Duration::from_secs(600))
             .output()
             .unwrap();
         Ran {
