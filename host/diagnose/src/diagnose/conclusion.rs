@@ -101,8 +101,8 @@ fn state_uncertainty(diagnosis: &Diagnosis, evaluator: &Evaluator) -> Option<Str
     };
     let is_assumed = typical.iter().any(|value| !is_told(&value.path));
     (is_open && is_exact && is_assumed).then(|| {
-        "The file takes masses, moments of inertia and motor figures for exact. Where they are not, \
-         say so and try again: `[uncertainty]` and below it `typical = true` at its end."
+        "The file takes masses, moments of inertia and motor figures for exact. Where they are \
+         not, say so and try again: `[uncertainty]` and below it `typical = true` at its end."
             .to_string()
     })
 }

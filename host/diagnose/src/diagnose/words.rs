@@ -59,7 +59,12 @@ pub fn headline(diagnosis: &Diagnosis) -> String {
         Verdict::Ambiguous if diagnosis.alternatives.is_empty() => unrivalled(diagnosis),
         Verdict::Ambiguous => rivals(diagnosis),
         Verdict::Unexplained if diagnosis.effects.is_empty() => {
+            // What moves within its uncertainty is no finding.
             match diagnosis.wrong_values.as_slice() {
+                wrong if !wrong.is_empty() && wrong.iter().all(|w| w.within_uncertainty) => {
+                    "Something is missing: other values within their uncertainty do not explain it."
+                        .into()
+                }
                 [] if !diagnosis.left_out.is_empty() => {
                     "Something is missing, and what was tried so far does not explain it.".into()
                 }
@@ -280,12 +285,12 @@ fn after_verdict(diagnosis: &Diagnosis) -> Vec<String> {
 /// the file has them: with what is known of them.
 fn refit(diagnosis: &Diagnosis) -> Vec<String> {
     let (holdout, judged) = held_out(diagnosis);
-    let mut wrong = diagnosis.wrong_values.iter();
-    let free: Vec<String> = if wrong.clone().all(|w| w.within_uncertainty) {
+    let wrong = &diagnosis.wrong_values;
+    let free: Vec<String> = if wrong.iter().all(|w| w.within_uncertainty) {
         Vec::new()
     } else {
         let option = |wrong: &WrongValue| format!(" --free {}", wrong.fitted.path);
-        wrong.by_ref().map(option).collect()
+        wrong.iter().map(option).collect()
     };
     let (free, horizon) = (free.concat(), horizon(diagnosis));
     vec![

@@ -12,11 +12,10 @@ use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, diagnose_logs};
 use crate::error::{Error, Result};
 use crate::fitting::{
-    Addition, Refitted, Undetermined, add_effects, candidates_named, free_parameters, refit,
-    with_refitted,
+    Addition, Refitted, Undetermined, add_effects, candidates_named, freed, refit, with_refitted,
 };
-use crate::model::Model;
 use crate::model::edit::set_bounds;
+use crate::model::{Model, ParameterPath};
 use serde::Deserialize;
 use std::path::Path;
 use std::sync::PoisonError;
@@ -141,8 +140,9 @@ impl LabSession {
         self.model_at(&view)?;
         let file = model_file(begun.current);
         let text = with_bounds(self.toml(&begun)?, &file, bounds)?;
-        let model = Model::parse(&text, &file)?;
-        let free = free_parameters(&model, values)?;
+        let mut model = Model::parse(&text, &file)?;
+        let named = named(values, &model);
+        let free = freed(&mut model, named)?;
         let split = self.log_set(&view).read(&model.log)?;
         let horizon = Some(view.horizon());
         let refitted = refit(&model, &free, &split, horizon, &|p| report.hear(p))
@@ -155,7 +155,7 @@ impl LabSession {
             SavedStep {
                 title: format!("{} fitted", listed(&each(&names, value_name))),
                 toml,
-                command: Some(view.fit_command(values, bounds)),
+                command: Some(view.fit_command(named, bounds)),
                 note: String::new(),
                 values: saved_values(&refitted),
             },
@@ -206,6 +206,18 @@ impl ChosenBounds {
     }
 }
 
+/// The values to name in a fit of those that were chosen: none where they are what the model frees
+/// and it knows something of them beforehand, which a name would take back.
+fn named<'a>(values: &'a [String], model: &Model) -> &'a [String] {
+    let is_chosen = |path: &ParameterPath| values.contains(&path.to_string());
+    let is_own = values.len() == model.free.len() && model.free.iter().all(is_chosen);
+    if is_own && !model.uncertain.is_empty() {
+        &[]
+    } else {
+        values
+    }
+}
+
 /// A model's text with these bounds.
 ///
 /// # Errors
@@ -242,5 +254,26 @@ pub(super) fn unchanged(saved: &SavedSession, begun: &SavedSession) -> Result<()
             "the model or the logs were changed meanwhile",
             "begin again: the result would be of what was there before",
         ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_model_frees_is_not_named_where_it_knows_something_of_it() {
+        let text = "[rig]\nname = \"arm\"\nangle_zero = \"hanging\"\n\
+                    [[link]]\ncom_m = 0.1\nmass_kg = 0.2\ninertia_kg_m2 = 1e-3\n\
+                    [[joint]]\ndrive = \"passive\"\n[log]\ntime = { column = \"t\", unit = \"s\" }\n\
+                    [[log.joint]]\nposition = { column = \"q\", unit = \"rad\" }\n";
+        let stated = format!("{text}[uncertainty]\ntypical = true\n");
+        let model = |text: &str| Model::parse(text, Path::new("arm.toml")).unwrap();
+        let (exact, stated) = (model(text), model(&stated));
+        let all: Vec<String> = stated.free.iter().map(ToString::to_string).collect();
+        assert_eq!(all.len(), 3);
+        assert!(named(&all, &stated).is_empty());
+        assert_eq!(named(&all[1..], &stated), &all[1..]);
+        assert_eq!(named(&all, &exact), all);
     }
 }

@@ -80,7 +80,7 @@ pub struct Model {
     pub free: Vec<ParameterPath>,
     /// Values that a fit keeps from low to high, within what is possible: the user knows so much.
     pub bounds: Vec<(ParameterPath, (f64, f64))>,
-    /// What is known beforehand of values that are free, but not exactly: a fit takes it as a prior.
+    /// What is known beforehand of values that are free, but not exactly: a prior of every fit.
     pub uncertain: Vec<UncertainValue>,
     /// How this rig's logs name and scale their columns.
     pub log: LogColumns,

@@ -214,6 +214,22 @@ mod tests {
     use crate::model::Drive;
 
     #[test]
+    fn a_forms_figures_are_as_uncertain_as_such_figures_are() {
+        let plan = ModelPlan {
+            guessed: false,
+            name: "arm".into(),
+            angle_zero: "hanging".into(),
+            angles: "relative".into(),
+            gravity_m_s2: None,
+            links: vec![link("duty")],
+        };
+        let text = new_model_toml(&plan).unwrap();
+        let model = Model::parse(&text, Path::new("arm.toml")).unwrap();
+        assert_eq!(model.uncertain, model.typically_uncertain());
+        assert!(!model.uncertain.is_empty());
+    }
+
+    #[test]
     fn a_number_that_was_computed_is_written_without_its_rounding() {
         let even_rod = 0.3 * 0.25 * 0.25 / 12.0;
         assert_eq!(format!("{even_rod}"), "0.0015624999999999999");

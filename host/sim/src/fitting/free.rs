@@ -34,8 +34,8 @@ impl From<FreeError> for Error {
     }
 }
 
-/// Addresses of the values to fit: those in `named`, of which the model then takes nothing for known
-/// beforehand, or the model's own.
+/// Addresses of the values to fit: those in `named`, of which the model then takes nothing for
+/// known beforehand, or the model's own.
 ///
 /// # Errors
 /// As [`FreeError`] says.

@@ -1,8 +1,8 @@
 //! `cargo xtask verdicts`: whether what is said of a design is what it then does.
 //!
-//! `gains`, on random robots, against a simulation of its own (`tests/measure/src/verdicts`); `deploy
-//! --dry-run` against `balance` on the simulated CM-5, on random robots and on robots with one
-//! non-ideality each.
+//! `gains`, on random robots, against a simulation of its own (`tests/measure/src/verdicts`);
+//! `deploy --dry-run` against `balance` on the simulated CM-5, on random robots and on robots with
+//! one non-ideality each.
 
 use super::page::Page;
 use super::program;

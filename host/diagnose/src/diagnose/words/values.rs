@@ -75,6 +75,14 @@ mod tests {
             "{said_of_all}"
         );
         assert!(!next.contains("--free"), "{next}");
+        let mut unexplained = said(Verdict::Unexplained, vec![], vec![]);
+        unexplained.wrong_values = vec![within("link1.mass_kg")];
+        complete(&mut unexplained);
+        let headline = &unexplained.summary[0];
+        assert!(
+            headline.starts_with("Something is missing: other values"),
+            "{headline}"
+        );
         let (said_of_both, next) = of(vec![
             within("link1.mass_kg"),
             wrong("link1.com_m", 0.1, 0.2),
