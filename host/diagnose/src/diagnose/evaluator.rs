@@ -14,7 +14,7 @@ use super::search::SearchResults;
 use super::values::as_given;
 use crate::fitting::{
     Candidate, Fit, FitOptions, FitProblem, Horizon, PredictionChange, Sizes, changes, coarsened,
-    is_followed, search_horizons,
+    enough_to_search, is_followed, search_horizons,
 };
 use crate::model::{Model, ParameterPath};
 use crate::motion::Motion;
@@ -323,6 +323,7 @@ impl SearchStart {
         let start = |horizon: Horizon| {
             let data = whole.recut(horizon);
             let model = coarsened(model, &data);
+            let data = enough_to_search(data, &model);
             let fit = base_fit(&model, &data, few, seed);
             SearchStart {
                 horizon,

@@ -1,17 +1,25 @@
 //! A first look at every candidate on top of a hypothesis.
 //!
-//! All get a glance, a fit as far as derivatives known before lead; the best third, but the best
-//! few only where the rest is hopeless beside the first, gets a look, for which derivatives are
-//! taken again.
+//! Those whose change of the prediction promises something get a glance, a fit as far as derivatives
+//! known before lead, of few candidates all; the best third, but the best few only where the rest
+//! is hopeless beside the first, gets a look, for which derivatives are taken again.
 
-use super::budget::{FINALISTS, LOOK, SECOND_LOOKS};
-use super::evaluator::Evaluator;
+use super::budget::{FINALISTS, FIRST_LOOK_STEPS, LOOK, SECOND_LOOKS};
+use super::evaluator::{Evaluator, Reach};
 use super::hypothesis::Hypothesis;
 use crate::fitting::{FitOptions, InitialGuess, PredictionChange, ProjectedResidual};
+use crate::model::ParameterPath;
 use rayon::prelude::*;
 
 /// A guess that promises less than this share of what the candidate's best one does is not tried.
 const WORTH: f64 = 0.05;
+
+/// Of more candidates than three joints have, most act where nothing is missing: beyond the first
+/// few dozen, those that promise less than this share of what the best one does are taken as their
+/// guess is, without a glance.
+const MANY: usize = 120;
+const ALWAYS_GLANCED: usize = 60;
+const WORTH_A_GLANCE: f64 = 0.005;
 
 /// More of one effect cannot leave more: where a glance ends this far above the squared error of
 /// what it began from, its derivatives led astray, as where free values take the effect's place
@@ -38,6 +46,15 @@ fn best_few(mut of_candidates: Vec<f64>) -> f64 {
     last.copied().unwrap_or(f64::INFINITY)
 }
 
+/// What a candidate must promise for a glance, of what each promises: nothing where all are tried.
+fn least_promise(mut promises: Vec<f64>, reach: Reach) -> f64 {
+    if reach == Reach::Everything || promises.len() <= MANY {
+        return 0.0;
+    }
+    promises.sort_by(|a, b| b.total_cmp(a));
+    (WORTH_A_GLANCE * promises[0]).min(promises[ALWAYS_GLANCED - 1])
+}
+
 impl Evaluator<'_> {
     /// Short fits of candidates on top of a hypothesis, each from its best initial guesses, at most
     /// `starts`; the better one counts. `changes` are those of each candidate.
@@ -48,21 +65,44 @@ impl Evaluator<'_> {
         starts: usize,
     ) -> Vec<Hypothesis> {
         let residual = ProjectedResidual::new(&from.search);
-        let glances = changes.par_iter().map(|changes| {
-            let guesses = self.guesses(&residual, changes, starts);
+        let guesses = changes.par_iter();
+        let guesses = guesses.map(|changes| self.guesses(&residual, changes, starts));
+        let guesses: Vec<Vec<InitialGuess>> = guesses.collect();
+        let [worth, rest] = self.worth_a_glance(guesses);
+        let glances = worth.into_par_iter().map(|guesses| {
             let glances = guesses.into_iter().map(|guess| {
                 let glance = self.glance(from, &guess);
                 (guess, glance)
             });
+            let glances = glances.collect();
             self.course.step(1);
-            glances.collect()
+            glances
         });
         let glances: Vec<Vec<Glance>> = glances.collect();
+        let unpromising = rest.par_iter().filter_map(|guesses| {
+            self.course.step(FIRST_LOOK_STEPS);
+            let guess = guesses.first()?;
+            Some(self.unfitted(from, guess))
+        });
+        let unpromising: Vec<Hypothesis> = unpromising.collect();
         let limit = self.worth_a_look(&glances);
         let looks = glances.into_par_iter();
-        looks
+        let mut looks: Vec<Hypothesis> = looks
             .filter_map(|glances| self.best_of(from, glances, limit))
-            .collect()
+            .collect();
+        looks.extend(unpromising);
+        looks
+    }
+
+    /// The candidates' guesses that are worth a glance, and the others.
+    fn worth_a_glance(&self, all: Vec<Vec<InitialGuess>>) -> [Vec<Vec<InitialGuess>>; 2] {
+        let promise = |guesses: &[InitialGuess]| guesses.first().map_or(0.0, |guess| guess.gain);
+        let promises = all.iter().map(|guesses| promise(guesses));
+        let least = least_promise(promises.collect(), self.reach);
+        let (worth, rest) = all
+            .into_iter()
+            .partition(|guesses| promise(guesses) >= least);
+        [worth, rest]
     }
 
     /// The best guesses of a candidate.
@@ -121,6 +161,15 @@ impl Evaluator<'_> {
             .min_by(Hypothesis::by_error)
     }
 
+    /// One more effect as it is guessed to be.
+    fn unfitted(&self, from: &Hypothesis, guess: &InitialGuess) -> Hypothesis {
+        let mut model = from.search.model.clone();
+        model.effects.push(guess.candidate.instance(&guess.values));
+        let paths: Vec<ParameterPath> = guess.candidate.paths().collect();
+        let search = from.search.at_start(&model, &paths, &self.search);
+        Hypothesis::new(from.set_with(guess.candidate), search)
+    }
+
     /// A fit of one more effect as far as the derivatives known before lead.
     fn glance(&self, from: &Hypothesis, guess: &InitialGuess) -> Hypothesis {
         let options = FitOptions::iterations(LOOK).glance();
@@ -131,6 +180,19 @@ impl Evaluator<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_many_candidates_those_that_promise_nothing_get_no_glance() {
+        let many: Vec<f64> = (0..200).map(|k| 1000.0 * 0.9_f64.powi(k)).collect();
+        let least = least_promise(many.clone(), Reach::Promising);
+        let glanced = many.iter().filter(|promise| **promise >= least).count();
+        assert_eq!(glanced, ALWAYS_GLANCED);
+        let near = vec![1.0; 200];
+        assert!(least_promise(near, Reach::Promising) <= 1.0);
+        assert_eq!(least_promise(many.clone(), Reach::Everything), 0.0);
+        let few = many[..MANY].to_vec();
+        assert_eq!(least_promise(few, Reach::Promising), 0.0);
+    }
 
     #[test]
     fn a_third_of_many_candidates_gets_a_look_and_all_of_a_few() {

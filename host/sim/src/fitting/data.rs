@@ -172,6 +172,16 @@ impl FitProblem {
         }
     }
 
+    /// The same motions with so many of the windows, spread evenly over all; all, if there are fewer.
+    pub fn with_windows(mut self, wanted: usize) -> FitProblem {
+        let all = self.windows.len();
+        if wanted < all {
+            let kept = (0..wanted).map(|k| (2 * k + 1) * all / (2 * wanted));
+            self.windows = kept.map(|at| self.windows[at].clone()).collect();
+        }
+        self
+    }
+
     /// How long the windows of each motion are at this horizon.
     pub fn motion_windows(&self, horizon: Horizon) -> Vec<MotionWindow> {
         let motions = self.motions.iter().zip(&self.stable);

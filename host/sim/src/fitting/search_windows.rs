@@ -3,6 +3,7 @@
 use super::data::FitProblem;
 use super::fit::Fit;
 use super::horizon::Horizon;
+use crate::model::Model;
 use crate::motion::Motion;
 
 /// Windows to search on, s: the first that the base model follows.
@@ -24,6 +25,23 @@ pub fn search_horizons(whole: &FitProblem, longest: Horizon, few: bool) -> Vec<H
     lengths.dedup();
     let lengths = lengths.into_iter().map(Horizon::Seconds);
     lengths.map(|length| longest.shorter(length)).collect()
+}
+
+/// Readings that a search among the effects of a robot in space needs at most, and windows that it
+/// has at least: each of its steps costs several times what one of a planar chain does, and what
+/// is missing shows in a part of the windows. What is found is fitted to all of them.
+const SPATIAL_READINGS: usize = 3500;
+const LEAST_WINDOWS: usize = 16;
+
+/// As many of the windows, spread evenly over all motions, as a search among effects needs; all of
+/// a planar chain.
+pub fn enough_to_search(data: FitProblem, model: &Model) -> FitProblem {
+    if model.robot.is_none() {
+        return data;
+    }
+    let (readings, windows) = (data.samples() * data.joints(), data.windows.len());
+    let wanted = (windows * SPATIAL_READINGS).div_ceil(readings.max(1));
+    data.with_windows(wanted.max(LEAST_WINDOWS))
 }
 
 /// Whether a fitted model still follows the windows of these data: what it leaves is less than half

@@ -86,6 +86,33 @@ impl Fit {
         })
     }
 
+    /// Whether nothing else is hidden where a window of this other model begins.
+    fn hides_alike(&self, model: &Model, data: &FitProblem) -> bool {
+        let [had, hidden] = [&self.model, model].map(|model| data.hidden(model));
+        had.len() == hidden.len() && had.iter().zip(&hidden).all(|(a, b)| a.is_alike(b))
+    }
+
+    /// The fit of more parameters of `model` before its first step: what is left at the start that
+    /// the model holds.
+    pub fn at_start(&self, model: &Model, added: &[ParameterPath], data: &FitProblem) -> Fit {
+        let mut window_starts = self.window_starts.clone();
+        if !self.hides_alike(model, data) {
+            (window_starts.iter_mut())
+                .for_each(|window_start| window_start.forget_hidden(data.joints()));
+        }
+        Fit {
+            model: model.clone(),
+            free: [&self.free, added].concat(),
+            residuals: residuals(model, data, &window_starts),
+            window_starts,
+            converged: false,
+            simulations: 1,
+            jacobian: Vec::new(),
+            prior_weight: 1.0,
+            fresh: false,
+        }
+    }
+
     /// Fits more parameters of `model`, which holds this fit's values and a start for the new ones.
     ///
     /// The derivatives by what was free before are taken over until steps contradict them: of the
@@ -97,25 +124,8 @@ impl Fit {
         data: &FitProblem,
         options: FitOptions,
     ) -> Fit {
-        let [had, hidden] = [&self.model, model].map(|model| data.hidden(model));
-        let hides_alike =
-            had.len() == hidden.len() && had.iter().zip(&hidden).all(|(a, b)| a.is_alike(b));
-        let mut window_starts = self.window_starts.clone();
-        if !hides_alike {
-            (window_starts.iter_mut())
-                .for_each(|window_start| window_start.forget_hidden(data.joints()));
-        }
-        let start = Fit {
-            model: model.clone(),
-            free: [&self.free, added].concat(),
-            residuals: residuals(model, data, &window_starts),
-            window_starts,
-            converged: false,
-            simulations: 1,
-            jacobian: Vec::new(),
-            prior_weight: 1.0,
-            fresh: false,
-        };
+        let hides_alike = self.hides_alike(model, data);
+        let start = self.at_start(model, added, data);
         let mut run = LevenbergMarquardt::new(start, data, guesses(data));
         // A sensor that trails makes the start's acceleration matter; some effects have unknowns of
         // their own.

@@ -13,9 +13,13 @@ use crate::motion::Motion;
 /// Change of a prediction, in standard deviations of a reading, that no verdict hangs on.
 const NEGLIGIBLE: f64 = 0.03;
 
-/// Longest step that this model may take because its own laws allow it, s: those that are tried on
-/// it, a grip that slips for one, remember from step to step.
+/// The same where steps are dear: a hundredth of what noise leaves in a square.
+const NEGLIGIBLE_SPATIAL: f64 = 0.1;
+
+/// Longest step that a model may take because its own laws allow it, s: of those that are tried on
+/// it, the torque of some has corners. A robot in space, whose steps are dear, takes them longer.
 const LONGEST_S: f64 = 0.0051;
+const LONGEST_SPATIAL_S: f64 = 0.0101;
 
 /// Share of what a fit leaves that its steps may account for: 2 % of the error.
 const SHARE: f64 = 0.2;
@@ -42,9 +46,13 @@ pub fn coarsened(model: &Model, data: &FitProblem) -> Model {
     let period_s = shortest_period_s(data);
     let steps = (1..=8).map(|parts| period_s / f64::from(parts));
     let steps = steps.take_while(|step_s| *step_s > 1.5 * model.step_s);
-    for step_s in steps.filter(|step_s| *step_s < LONGEST_S) {
+    let (longest_s, negligible) = match model.robot {
+        Some(_) => (LONGEST_SPATIAL_S, NEGLIGIBLE_SPATIAL),
+        None => (LONGEST_S, NEGLIGIBLE),
+    };
+    for step_s in steps.filter(|step_s| *step_s < longest_s) {
         let coarse = with_step(model, step_s);
-        if difference(&fine, &residuals(&coarse, data, &window_starts)) < NEGLIGIBLE {
+        if difference(&fine, &residuals(&coarse, data, &window_starts)) < negligible {
             return coarse;
         }
     }

@@ -114,13 +114,14 @@ impl Plant {
         delays_s.retain(|delay_s| *delay_s != 0.0);
         delays_s.sort_by(f64::total_cmp);
         delays_s.dedup();
+        let senses = joints.iter().any(|j| !j.sense.is_empty());
         let offsets_s = || joints.iter().map(|joint| joint.offset_s);
         Plant {
             slides: each(model, |joint| model.joints[joint].slide.is_some()),
             rates,
             rate_readings: Vec::new(),
             rate_joints: Vec::new(),
-            senses: joints.iter().any(|j| !j.sense.is_empty()),
+            senses,
             delays_s,
             has_offsets: offsets_s().any(|offset_s| offset_s != 0.0),
             late_s: offsets_s().reduce(f64::max).unwrap_or(0.0),
@@ -134,7 +135,7 @@ impl Plant {
             zero_rad: model.angle_zero.from_hanging_rad(),
             zeros_rad: each(model, |joint| model.zero_rad(joint)),
             absolute: model.angles == Angles::Absolute,
-            step_s: model.step_s,
+            step_s: step_s(model.step_s, of_joints > 0 || senses),
             torques_stay: joints.iter().all(JointPlan::torque_stays),
             needs_gear_load: needs.contains(&Needs::GearLoad),
             needs_bearing_load: needs.contains(&Needs::BearingLoad),
@@ -207,6 +208,19 @@ fn each<T>(model: &Model, value: impl Fn(usize) -> T) -> Vec<T> {
 /// Longest step, in parts of the time in which a motor swings against its joint by 1 rad, that
 /// integrates it well; so for a base.
 const AUXILIARY_STEP: f64 = 0.4;
+
+/// Longest step over which laws that remember from step to step, a grip that slips for one, go on
+/// well, s.
+const REMEMBERED_STEP_S: f64 = 0.0051;
+
+/// The model's longest step, s, where no law remembers from step to step.
+fn step_s(of_model_s: f64, remembers: bool) -> f64 {
+    if remembers {
+        of_model_s.min(REMEMBERED_STEP_S)
+    } else {
+        of_model_s
+    }
+}
 
 /// See [`Plant::auxiliary_step_s`].
 fn auxiliary_step_s(joints: &[JointPlan], base: Option<BaseSpring>) -> f64 {
