@@ -1,6 +1,6 @@
 //! Transport delay: the drive acts on an input that is some time old.
 
-use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, StartUnknown};
 
 /// u(t - T).
 #[derive(Debug)]
@@ -45,5 +45,9 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for Delay {
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0]
+    }
+
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Input { is_slow: false })
     }
 }

@@ -1,7 +1,7 @@
 //! Gear compliance: the motor turns its joint through a spring.
 
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
-use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
+use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site, StartUnknown};
 
 /// k (q_m - q) + c (w_m - w) on the joint, and its reaction on a motor of inertia J, both as seen
 /// at the joint; c by the damping ratio c / (2 sqrt(k J)).
@@ -91,6 +91,11 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 impl Law for GearCompliance {
     fn difference(&self) -> f64 {
         2e-3
+    }
+
+    /// How far the gear is wound up.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Body)
     }
 
     fn gear(&self, values: &[f64], gear: &mut Gear) {

@@ -66,7 +66,7 @@ pub use placebo::PLACEBO;
 pub use probe::ProbeVariable;
 pub use state::{
     AtRest, DriveState, Encoded, FrictionState, JointState, MemoryCell, Rig, SenseMemory, Slope,
-    StepState,
+    StartUnknown, StepState,
 };
 pub use torque_scale::TORQUE_SCALE;
 pub use unit_suffix::split_unit;

@@ -1,6 +1,8 @@
 //! Sensor lag: the reading is low-pass filtered.
 
-use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
+use super::{
+    EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site, StartUnknown,
+};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
 /// straight line over the step, or a rate along a parabola.
@@ -50,6 +52,11 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for SensorLag {
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
+    }
+
+    /// It trails as the speed of its readings says.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Nothing)
     }
 
     fn sense(

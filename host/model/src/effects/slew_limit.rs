@@ -1,7 +1,9 @@
 //! Slew limit: a servo's profile, or a driver's ramp, lets its input change no faster than so much.
 
-use super::StepState;
-use super::{AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
+    StartUnknown, StepState,
+};
 
 /// |d input / dt| <= r. It remembers the input that it has reached.
 #[derive(Debug)]
@@ -45,6 +47,10 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for SlewLimit {
     fn remembers(&self) -> bool {
         true
+    }
+
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Input { is_slow: true })
     }
 
     /// Not a number: the first input is obeyed at once.

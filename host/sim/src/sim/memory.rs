@@ -17,6 +17,8 @@ pub struct PlantMemory {
     /// Sample at which the stretch before ended, and in which state; none where nothing is
     /// remembered.
     pub(super) ended: Option<(usize, StartState)>,
+    /// Inputs of the drives before the log of the motion, by joint; its first ones where empty.
+    pub(super) before: Vec<f64>,
     /// What is hidden where the next stretch begins, in the order of [`Plant::hidden`]; as
     /// remembered where empty.
     pub(super) begins: Vec<f64>,
