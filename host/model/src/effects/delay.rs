@@ -32,6 +32,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
      speed; input and residual correlate best at that lag",
     confused_with: &[
         "gear_compliance: both answer late; only a spring rings",
+        "drive_lag: both are late after a step; a delay rounds nothing off",
         "slew_limit: both are late after a step; a delay is the same for small and large ones",
         "sensor_lag: both lag; a filter also flattens fast motion, and it lags a free swing too",
         "time_offset: a late input and a late reading look alike while the drive moves the joint; \

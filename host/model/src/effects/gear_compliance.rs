@@ -57,6 +57,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     looks_like: "after a step of the drive the arm rings at a frequency that gravity does not \
      make, and it starts late; slow motions are right",
     confused_with: &[
+        "drive_lag: both answer late; only a spring rings",
         "armature: a stiff gear is an inertia alone; only a spring rings and answers fast \
          commands late",
         "gear_backlash: both let motor and joint part; a spring parts in proportion to the load, \

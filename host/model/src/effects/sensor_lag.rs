@@ -36,6 +36,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     looks_like: "the reading trails in proportion to the speed and rounds off fast motion; a \
      resting arm is read rightly",
     confused_with: &[
+        "drive_lag: both trail and round off; a filter of the input leaves a free fall as it is",
         "delay: both trail; a delay shifts without rounding, and only what is driven",
         "viscous: both make the reading trail; friction takes energy from a free swing, a lag \
          does not",

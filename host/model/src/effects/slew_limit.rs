@@ -35,6 +35,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     looks_like: "small changes of the input are obeyed at once, large steps arrive late and as a \
      ramp; the delay grows with the height of the step",
     confused_with: &[
+        "drive_lag: both arrive as a ramp; a filter takes the same time for small and large steps",
         "delay: both are late after a step; a delay is the same for small and large ones",
         "torque_saturation: both blunt strong commands; the limit of torque stays while the \
          command stays, a ramp ends",

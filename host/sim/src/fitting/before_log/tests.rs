@@ -11,6 +11,7 @@ use std::path::Path;
 const REMEMBERING: &[(&str, &[f64], usize)] = &[
     ("delay", &[0.12], 1),
     ("slew_limit", &[1.24], 1),
+    ("drive_lag", &[0.15], 1),
     ("fold_back", &[0.5, 0.1, 0.4], 1),
     ("thermal_drift", &[1.5, 4.0], 2),
     ("gear_backlash", &[0.01, 0.05], 1),
