@@ -126,7 +126,7 @@ fn a_limit_that_one_motion_reaches_is_told_and_not_claimed() {
         diagnosis.summary
     );
     found_limit(&diagnosis);
-    assert_eq!(diagnosis.shows_alone, [name.clone()]);
+    assert_eq!(diagnosis.shows_alone, std::slice::from_ref(&name));
     let said = &diagnosis.summary[0];
     assert!(
         said.starts_with(&format!("Shows in {name} alone: ")),
