@@ -1,6 +1,7 @@
 //! Motions take turns: where the fitted ones leave only noise and others, held out, do not, what is
 //! missing shows in the latter alone. Some of them are then learned from, and another proves it;
-//! where there is no other, all are learned from and nothing is claimed that one motion alone shows.
+//! where there is no other, all are learned from and nothing is claimed that one motion alone
+//! shows.
 
 use super::evaluator::Evaluator;
 use super::verdict::MOST_NOMINAL;

@@ -36,8 +36,8 @@ pub(super) static INFO: EffectInfo = EffectInfo {
             .bounds(0.0, 2.0)
             .starts(&[0.03, 0.1]),
     ],
-    looks_like: "the motion trails the command and rounds off its steps; a fall after the torque is \
-     off is not late",
+    looks_like: "the motion trails the command and rounds off its steps; a fall after the torque \
+     is off is not late",
     confused_with: &[
         "delay: both are late after a step; a delay rounds nothing off",
         "slew_limit: both arrive as a ramp; a filter takes the same time for small and large steps",

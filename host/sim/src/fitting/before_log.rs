@@ -13,8 +13,8 @@ use crate::sim::{HiddenQuantity, HiddenUnknown, Plant};
 #[cfg(test)]
 mod tests;
 
-/// How much of the most may have come together before: a limit that acts late jumps, so that no slope
-/// leads to it.
+/// How much of the most may have come together before: a limit that acts late jumps, so that no
+/// slope leads to it.
 const AMOUNTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 
 /// Begins each motion with what leaves least: its drives had the same input before, none, or, of

@@ -202,7 +202,8 @@ const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
 /// Step of the difference in a share of what something hidden can be displaced by.
 const SHARE_DIFFERENCE: f64 = 0.02;
 
-/// The same of where a body may be, and how fast it may move: both are far more than they mostly are.
+/// The same of where a body may be, and how fast it may move: both are far more than they mostly
+/// are.
 const BODY_DIFFERENCE: f64 = 0.002;
 
 /// Step of the finite difference of a value.

@@ -7,7 +7,8 @@ use crate::model::{EffectInstance, Model, ParameterPath};
 use crate::motion::Motion;
 use std::path::Path;
 
-/// Each effect that remembers, with values that show in the motion, and which of these are refitted.
+/// Each effect that remembers, with values that show in the motion, and which of these are
+/// refitted.
 const REMEMBERING: &[(&str, &[f64], usize)] = &[
     ("delay", &[0.12], 1),
     ("slew_limit", &[1.24], 1),
