@@ -91,8 +91,8 @@ pub trait Law: Sync + fmt::Debug {
         [0.0; 2]
     }
 
-    /// What of the time before a simulation neither its start state nor any reading tells, and a fit
-    /// estimates. What remembers, trails or is late says so, [`StartUnknown::Nothing`] too.
+    /// What of the time before a simulation neither its start state nor any reading tells, and a
+    /// fit estimates. What remembers, trails or is late says so, [`StartUnknown::Nothing`] too.
     fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
         None
     }

@@ -2,7 +2,8 @@
 //!
 //! The Jacobian is an arrow: parameters shared by all windows, and a start state per window.
 //! Eliminating the start states window by window (Schur complement), and then what is unknown of
-//! each motion's beginning, leaves a system of the parameters' size, however many windows there are.
+//! each motion's beginning, leaves a system of the parameters' size, however many windows there
+//! are.
 
 use super::motion_start::{MotionBlock, MotionNormal, MotionStart};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
