@@ -140,7 +140,7 @@ const FRICTION: [(&str, f64, f64); 2] = [("viscous", 0.01, 0.03), ("coulomb", 0.
 /// First of the streams from which the robot's hidden effects are drawn.
 const SECRETS: u64 = 200;
 /// Kinds that only driven joints have.
-const OF_DRIVES: [&str; 16] = [
+const OF_DRIVES: [&str; 17] = [
     "load_friction",
     "drive_asymmetry",
     "direction_asymmetry",
@@ -153,6 +153,7 @@ const OF_DRIVES: [&str; 16] = [
     "cogging",
     "torque_scale",
     "slew_limit",
+    "drive_lag",
     "thermal_drift",
     "fold_back",
     "gear_compliance",

@@ -4,14 +4,14 @@ mod draws;
 
 use super::gyro;
 use super::rounding::rounded;
-use draws::{Draw, EFFECTS, Parameters, ROBOT_EFFECTS};
+use draws::{Draw, EFFECTS, LATER, Parameters, ROBOT_EFFECTS};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 /// What a challenge hides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hidden {
-    /// Any effect but those of a gyro, or once in twelve nothing.
+    /// Any effect but those of a gyro and [`drive_lag`](KINDS), or once in twelve nothing.
     Random,
     /// Nothing: the model is complete but for its friction values.
     Nothing,
@@ -99,7 +99,9 @@ impl HiddenEffect {
             Hidden::Random if rng.random_range(0..12) == 0 => None,
             Hidden::Random => {
                 // A gyro in the log would tell that something is hidden in it.
-                let others = KINDS.into_iter().filter(|kind| !gyro::KINDS.contains(kind));
+                let others = KINDS
+                    .into_iter()
+                    .filter(|kind| !gyro::KINDS.contains(kind) && !LATER.contains(kind));
                 let others: Vec<&'static str> = others.collect();
                 Some(others[rng.random_range(0..others.len())])
             }

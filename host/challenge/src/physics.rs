@@ -63,6 +63,8 @@ pub struct Physics {
     pub logged_late_s: f64,
     /// Fastest change of the duty, 1/s.
     pub duty_per_s: f64,
+    /// Time constant with which the duty follows the command, s.
+    pub command_lag_s: f64,
     /// Relative rise of the winding's resistance, warm from full duty, and how long that takes, s.
     pub warming: f64,
     /// See `warming`.

@@ -21,7 +21,7 @@ use Draw::{Factor, Fixed, Signed, Whole, Within};
 pub(super) type Parameters = &'static [(&'static str, Draw)];
 
 /// Every effect that can be hidden.
-pub(super) const EFFECTS: [(&str, Parameters); 38] = [
+pub(super) const EFFECTS: [(&str, Parameters); 39] = [
     ("viscous", &[("coefficient_nm_s_rad", Within(0.01, 0.04))]),
     ("coulomb", &[("torque_nm", Within(0.02, 0.06))]),
     (
@@ -140,7 +140,11 @@ pub(super) const EFFECTS: [(&str, Parameters); 38] = [
     ("rate_bias", &[("bias_rad_s", Signed(0.01, 0.05))]),
     ("rate_scale", &[("factor", Factor(0.02, 0.06))]),
     ("rate_lag", &[("time_constant_s", Within(0.005, 0.03))]),
+    ("drive_lag", &[("time_constant_s", Within(0.03, 0.12))]),
 ];
+
+/// What challenges of a seed alone never hide: it came later, and they keep what they hide.
+pub(super) const LATER: [&str; 1] = ["drive_lag"];
 
 /// What is drawn otherwise for the robot, whose drives are stronger and whose poles are faster.
 pub(super) const ROBOT_EFFECTS: [(&str, Parameters); 13] = [

@@ -48,6 +48,7 @@ impl Physics {
             ("rate_scale", &[factor]) => self.gyro.get_or_insert_default().scale = factor,
             ("rate_lag", &[constant]) => self.gyro.get_or_insert_default().lag_s = constant,
             ("slew_limit", &[rate]) => self.duty_per_s = rate,
+            ("drive_lag", &[constant]) => self.command_lag_s = constant,
             ("thermal_drift", &[rise, time]) => (self.warming, self.warming_s) = (rise, time),
             ("fold_back", &[share, level, after]) => {
                 (self.fold_share, self.fold_level, self.fold_after_s) = (share, level, after);

@@ -156,6 +156,11 @@ impl BlockErrors {
 
     /// Largest mean squared weighted residual of a motion.
     pub fn worst_motion(&self) -> f64 {
+        self.motion_means().into_iter().fold(0.0, f64::max)
+    }
+
+    /// Mean squared weighted residual of each motion.
+    pub fn motion_means(&self) -> Vec<f64> {
         let mut sums = vec![(0.0, 0); self.motions.len()];
         for block in &self.blocks {
             let (sum, count) = &mut sums[block.motion];
@@ -163,7 +168,7 @@ impl BlockErrors {
             *count += block.count;
         }
         let means = sums.iter().map(|(sum, count)| sum / (*count).max(1) as f64);
-        means.fold(0.0, f64::max)
+        means.collect()
     }
 
     /// Whether nothing but noise is left of any signal: what one joint or sensor shows must not

@@ -73,6 +73,7 @@ pub(super) fn conclude(evidence: &VerdictEvidence, judging: &mut Judging) -> Dia
         windows: windows(evaluator),
         search_ended: evidence.ended,
         left_out: evidence.left_out.clone(),
+        shows_alone: evidence.shows_alone.clone(),
     };
     let scale = relative_scale::warning(&diagnosis, &evaluator.start, &evaluator.known);
     diagnosis.warnings.extend(scale);

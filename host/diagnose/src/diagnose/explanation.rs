@@ -41,6 +41,8 @@ pub(super) struct VerdictEvidence<'a> {
     pub ended: SearchEnded,
     /// What was not examined, in words.
     pub left_out: Vec<String>,
+    /// Motions that alone show what is explained, where none is left to prove it.
+    pub shows_alone: Vec<String>,
 }
 
 /// What explains the measurement, the simplest that does.
@@ -264,6 +266,7 @@ impl<'a> VerdictEvidence<'a> {
             per_motion_reduction: self.per_motion_reduction.unwrap_or(0.0),
             worst_fold: most_raised(&self.folds),
             is_examined: self.left_out.is_empty(),
+            is_provable: self.shows_alone.is_empty(),
             spans_bounds: kind == Kind::Effects && chosen.spans_bounds(&evaluator.training),
             placebo_ranks: kind == Kind::Effects && self.placebo_ranks(),
             rivals,

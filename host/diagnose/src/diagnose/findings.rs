@@ -219,6 +219,9 @@ pub struct Diagnosis {
     pub search_ended: SearchEnded,
     /// What was not examined because the time was over or the user took what there was, in words.
     pub left_out: Vec<String>,
+    /// Motions that alone show what was found: held out, while the others leave only noise, they
+    /// were learned from, and no motion is left to prove it.
+    pub shows_alone: Vec<String>,
 }
 
 impl FittedEffect {
@@ -313,6 +316,7 @@ impl Diagnosis {
             windows: Vec::new(),
             search_ended: SearchEnded::Complete,
             left_out: Vec::new(),
+            shows_alone: Vec::new(),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::fitting::Progress;
 use crate::log::{LogFinding, LogRequest, LogSet, Severity};
 use crate::model::Model;
-use crate::motion::{Split, split};
+use crate::motion::{Motion, Split, split};
 use std::path::Path;
 
 /// A diagnosis, and the motions it was made from.
@@ -55,14 +55,42 @@ pub fn diagnose_logs(
         horizon.check(model, named.training.iter().chain(&named.held_out))?;
     }
     let split = split(named.training, named.held_out);
-    let motions = [split.training.clone(), split.held_out.clone()];
-    let mut diagnosis = diagnose_on(&course, model, motions, options);
+    // Other motions are held out only where a command line can say so.
+    let is_log = |motion: &Motion| logs.held_out.iter().any(|log| log.name() == motion.name);
+    let may_split = split.held_out.iter().all(is_log);
+    let (mut diagnosis, split) = diagnose_on(&course, model, &split, may_split, options);
+    let logs = &turned(logs, &diagnosis, &split);
     let warned = findings.iter().filter(|f| f.severity == Severity::Warn);
     diagnosis.warnings.extend(warned.map(LogFinding::statement));
     for line in &mut diagnosis.next {
         *line = with_names(line, file.path, logs);
     }
     Ok(LogDiagnosis { diagnosis, split })
+}
+
+/// The logs in the parts that their motions took in the end.
+fn turned(logs: &LogSet, diagnosis: &Diagnosis, split: &Split) -> LogSet {
+    let all = || logs.all().into_iter();
+    if !diagnosis.shows_alone.is_empty() {
+        return LogSet {
+            training: all().collect(),
+            held_out: Vec::new(),
+        };
+    }
+    let is_fitted = |log: &LogRequest| {
+        let name = log.name();
+        split.training.iter().any(|motion| motion.name == name)
+    };
+    let (learned, held_out) = logs.held_out.iter().cloned().partition(is_fitted);
+    LogSet {
+        training: logs
+            .training
+            .iter()
+            .cloned()
+            .chain::<Vec<LogRequest>>(learned)
+            .collect(),
+        held_out,
+    }
 }
 
 /// A command line to be copied: the files' names in place of what stands for them.
@@ -91,5 +119,41 @@ pub fn quoted(word: &str) -> String {
         word.to_string()
     } else {
         format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn logs(names: &[&str]) -> Vec<LogRequest> {
+        names.iter().map(LogRequest::whole).collect()
+    }
+
+    #[test]
+    fn commands_name_logs_in_the_parts_they_took() {
+        let given = LogSet {
+            training: logs(&["a.csv"]),
+            held_out: logs(&["c.csv", "d.csv"]),
+        };
+        let motion = |name: &str| Motion {
+            name: name.into(),
+            ..Motion::default()
+        };
+        let mut diagnosis = Diagnosis::unfit(&[]);
+        let split = Split {
+            training: vec![motion("a.csv"), motion("c.csv")],
+            held_out: vec![motion("d.csv")],
+        };
+        let line = format!("diagnose {MODEL} {LOGS} --holdout {HELD_OUT}");
+        let said = |logs: &LogSet| with_names(&line, Path::new("m.toml"), logs);
+        let turned_logs = turned(&given, &diagnosis, &split);
+        assert_eq!(
+            said(&turned_logs),
+            "diagnose m.toml a.csv c.csv --holdout d.csv"
+        );
+        diagnosis.shows_alone = vec!["c.csv".into()];
+        let all = turned(&given, &diagnosis, &split);
+        assert_eq!(said(&all), "diagnose m.toml a.csv c.csv d.csv");
     }
 }

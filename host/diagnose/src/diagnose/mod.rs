@@ -35,6 +35,7 @@ mod search;
 mod selection;
 mod stability;
 mod terms;
+mod turns;
 mod values;
 mod verdict;
 mod warnings;

@@ -4,6 +4,8 @@
 use super::findings::{Diagnosis, MotionError};
 use super::names::listed;
 use super::verdict::MOST_NOMINAL;
+use super::words::{LOGS, MODEL, either, explained_by};
+use crate::output::number::{short, with_unit};
 
 /// What leaves more than this share of the held-out error does not show in it.
 const LEAST_GAIN: f64 = 0.97;
@@ -20,6 +22,61 @@ pub(super) fn headline(diagnosis: &Diagnosis) -> Option<String> {
         format!(
             "Something is missing that only fitted motions show ({names}): those held out prove \
          nothing of it."
+        )
+    })
+}
+
+/// What is said where the motions that alone show something were learned from, and nothing proves
+/// it: "Shows in c.csv alone: saturation at joint 1 (limit_nm = 0.27 N m); record another motion
+/// like it to prove it."
+pub(super) fn shown_alone(diagnosis: &Diagnosis) -> String {
+    let names = diagnosis.shows_alone.as_slice();
+    let them = if names.len() > 1 { "them" } else { "it" };
+    let claim = if wants_proof_alone(diagnosis) {
+        explained_by(&diagnosis.effects, &diagnosis.wrong_values) + &sizes(diagnosis)
+    } else {
+        either(diagnosis)
+    };
+    format!(
+        "Shows in {} alone: {claim}; record another motion like {them} to prove it.",
+        listed(names.to_vec())
+    )
+}
+
+/// Whether nothing but a proof is wanting: no other explanation does as well.
+pub(super) fn wants_proof_alone(diagnosis: &Diagnosis) -> bool {
+    let open = diagnosis.alternatives.iter().any(|rival| !rival.same_law);
+    !diagnosis.shows_alone.is_empty() && !open
+}
+
+/// Values of the effects in brackets: " (limit_nm = 0.27 N m)".
+fn sizes(diagnosis: &Diagnosis) -> String {
+    let values = diagnosis
+        .effects
+        .iter()
+        .flat_map(|effect| &effect.parameters);
+    let values = values.map(|value| {
+        format!(
+            "{} = {}",
+            value.key,
+            with_unit(&short(value.value), &value.unit)
+        )
+    });
+    let values: Vec<String> = values.collect();
+    if values.is_empty() {
+        return String::new();
+    }
+    format!(" ({})", values.join(", "))
+}
+
+/// How it is proved.
+pub(super) fn prove(diagnosis: &Diagnosis) -> Option<String> {
+    let names = diagnosis.shows_alone.as_slice();
+    (!names.is_empty()).then(|| {
+        format!(
+            "Record another motion like {}, and hold it out: handstand diagnose {MODEL} {LOGS} \
+             --holdout NEW.csv",
+            listed(names.to_vec())
         )
     })
 }

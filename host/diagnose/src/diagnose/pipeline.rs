@@ -15,10 +15,12 @@ use super::options::DiagnoseOptions;
 use super::progress::{Course, Stage};
 use super::search::SearchResults;
 use super::stability::folds;
+use super::turns::{Turn, turns};
+use super::verdict::MOST_NOMINAL;
 use crate::effects::{CONTROLS, PLACEBO};
 use crate::fitting::{Candidate, Progress, stated_from};
 use crate::model::Model;
-use crate::motion::Motion;
+use crate::motion::{Motion, Split};
 
 /// A placebo that gains this share of what the chosen set does on the short windows, both in
 /// factors of the error, is evaluated: half of the share that would make it rank.
@@ -27,7 +29,8 @@ const RANKING: f64 = 0.25;
 /// Searches for the effects a model is missing.
 ///
 /// `training` motions are fitted; `held_out` motions decide. Without held-out motions the training
-/// motions decide, and the diagnosis says so.
+/// motions decide, and the diagnosis says so. Where those held out alone show something they are
+/// learned from, too: [`Diagnosis::motions`] says which were held out in the end.
 ///
 /// Where its time is over, or [`StopSwitch::accept`](crate::fitting::StopSwitch::accept) asks for
 /// it, the best so far is judged; the diagnosis says what was left out. By
@@ -41,23 +44,50 @@ pub fn diagnose(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Diagnosis {
     let course = Course::new(options, progress);
-    diagnose_on(&course, model, [training, held_out], options)
+    let split = Split { training, held_out };
+    diagnose_on(&course, model, &split, true, options).0
 }
 
-/// The same of motions to fit and motions held out, on a course whose clock runs already.
+/// The same of motions to fit and motions held out, on a course whose clock runs already, and the
+/// split that it rests on in the end. Other motions are held out than those that are only where it
+/// `may_split` them.
 pub(super) fn diagnose_on(
     course: &Course,
     model: &Model,
-    [training, held_out]: [Vec<Motion>; 2],
+    split: &Split,
+    may_split: bool,
     options: &DiagnoseOptions,
-) -> Diagnosis {
+) -> (Diagnosis, Split) {
     let mut model = model.clone();
     model.free.retain(|path| !options.known.contains(path));
-    let evaluator = |reach| {
-        let (training, held_out) = (training.clone(), held_out.clone());
+    let evaluator_of = |split: &Split, reach| {
+        let (training, held_out) = (split.training.clone(), split.held_out.clone());
         Evaluator::new(&model, training, held_out, options, reach, course.clone())
     };
+    let evaluator = |reach| evaluator_of(split, reach);
     let mut found = FinishedSearch::by(evaluator(Reach::Promising));
+    if found.ended == SearchEnded::Complete && !found.is_explained() {
+        for turn in turns(&found.evaluator, split, may_split) {
+            let turned = course
+                .halt
+                .until(|| evaluator_of(&turn.split, Reach::Promising));
+            match turned.map(FinishedSearch::by) {
+                Ok(turned) if turned.explains_all() => {
+                    let Turn { split, shows_alone } = turn;
+                    let turned = FinishedSearch {
+                        shows_alone,
+                        ..turned
+                    };
+                    return (turned.judged(options.seed), split);
+                }
+                Ok(turned) if turned.left_out.is_empty() => {}
+                _ => {
+                    found.end_early(TURNS);
+                    break;
+                }
+            }
+        }
+    }
     if found.may_go_on() {
         let further = match found.evaluator.fork.take() {
             Some(fork) => {
@@ -72,7 +102,7 @@ pub(super) fn diagnose_on(
         };
         found.take(further.ok());
     }
-    found.judged(options.seed)
+    (found.judged(options.seed), split.clone())
 }
 
 /// A search that was done, and what it tried.
@@ -82,6 +112,8 @@ pub(super) struct FinishedSearch<'a> {
     ended: SearchEnded,
     /// What it did not try because it was ended.
     left_out: Vec<String>,
+    /// Motions that alone show what it found, where none proves it.
+    shows_alone: Vec<String>,
 }
 
 impl<'a> FinishedSearch<'a> {
@@ -116,6 +148,7 @@ impl<'a> FinishedSearch<'a> {
             },
             evaluator,
             left_out,
+            shows_alone: Vec::new(),
         }
     }
 
@@ -125,6 +158,27 @@ impl<'a> FinishedSearch<'a> {
             Explanation::Effects(set) => self.evaluator.is_explained_by(set),
             other => self.evaluator.at_noise_floor(other.hypothesis()),
         }
+    }
+
+    /// Whether something beyond the model as given leaves nothing to explain in any motion.
+    fn explains_all(&self) -> bool {
+        let explanation = self.tried.explanation(&self.evaluator);
+        let is_found = !matches!(explanation, Explanation::Given(_));
+        let evaluation = explanation.hypothesis().evaluation.as_ref();
+        let errors = evaluation.map(|e| [Some(&e.training), e.held_out.as_ref()]);
+        let mut errors = errors.into_iter().flatten().flatten();
+        let is_noise = errors.all(|errors| errors.worst_motion().sqrt() <= MOST_NOMINAL);
+        is_found && self.ended == SearchEnded::Complete && self.is_explained() && is_noise
+    }
+
+    /// Notes that a part of it was not done, or not to its end.
+    fn end_early(&mut self, part: &str) {
+        self.ended = if self.evaluator.course.is_accepted() {
+            SearchEnded::Stopped
+        } else {
+            SearchEnded::Time
+        };
+        self.left_out.push(part.to_string());
     }
 
     /// Whether a second search follows. Where this one was ended, it is left out.
@@ -147,14 +201,8 @@ impl<'a> FinishedSearch<'a> {
             Some(further) if further.ended == SearchEnded::Complete => {}
             Some(further) if further.ended == SearchEnded::Tolerance => *self = further,
             ended => {
-                let course = &self.evaluator.course;
-                self.ended = if course.is_accepted() {
-                    SearchEnded::Stopped
-                } else {
-                    SearchEnded::Time
-                };
                 let part = if ended.is_some() { "part of " } else { "" };
-                self.left_out.push(format!("{part}{SECOND}"));
+                self.end_early(&format!("{part}{SECOND}"));
             }
         }
     }
@@ -166,6 +214,7 @@ impl<'a> FinishedSearch<'a> {
             mut tried,
             ended,
             left_out,
+            shows_alone,
         } = self;
         let course = evaluator.course.clone();
         let again = evaluator.reach == Reach::Everything;
@@ -190,6 +239,7 @@ impl<'a> FinishedSearch<'a> {
             seed,
             ended,
             left_out,
+            shows_alone,
         };
         course.step(1);
         let structure = judging.part("the structure of what is left", 0.4, || {
@@ -227,6 +277,8 @@ impl<'a> FinishedSearch<'a> {
 
 /// The search that spares no candidate, in words.
 const SECOND: &str = "the second search";
+/// The searches that learn from motions held out, in words.
+const TURNS: &str = "what motions held out alone show";
 
 impl Evaluator<'_> {
     /// Fits of the explanation to each motion by itself. Where values that one motion found suit

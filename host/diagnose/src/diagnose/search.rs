@@ -380,6 +380,8 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
 }
 
 #[cfg(test)]
+mod drive_lag_tests;
+#[cfg(test)]
 mod ended_tests;
 #[cfg(test)]
 mod merged_tests;

@@ -46,6 +46,8 @@ pub(super) struct Signs {
     pub rivals: bool,
     /// Whether all was examined that could contradict it.
     pub is_examined: bool,
+    /// Whether another motion than those that alone show it could have proved it.
+    pub is_provable: bool,
 }
 
 /// Share of what is left that a free form must significantly gain before the explanation counts as
@@ -80,7 +82,7 @@ impl Signs {
             Kind::Given if !self.is_examined && !self.at_noise_floor => Verdict::Unexplained,
             Kind::Given => Verdict::Nominal,
             _ if self.placebo_ranks => Verdict::Unexplained,
-            _ if self.rivals || !self.is_examined => Verdict::Ambiguous,
+            _ if self.rivals || !self.is_examined || !self.is_provable => Verdict::Ambiguous,
             Kind::Values => Verdict::WrongValue,
             Kind::Effects => Verdict::Named,
         }

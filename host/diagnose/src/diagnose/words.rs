@@ -35,7 +35,7 @@ pub(super) fn complete(diagnosis: &mut Diagnosis) {
         .chain(pairs(diagnosis))
         .chain(shorter_steps(diagnosis))
         .collect();
-    if !diagnosis.error.held_out {
+    if !diagnosis.error.held_out && diagnosis.shows_alone.is_empty() {
         diagnosis.warnings.push(
             "no motion was held out: the figures are of the motions that were fitted".to_string(),
         );
@@ -56,6 +56,9 @@ pub fn headline(diagnosis: &Diagnosis) -> String {
         }
         Verdict::WrongValue => wrong_values(&diagnosis.wrong_values),
         Verdict::Named => format!("The model lacks {names}."),
+        Verdict::Ambiguous if !diagnosis.shows_alone.is_empty() => {
+            one_sided::shown_alone(diagnosis)
+        }
         Verdict::Ambiguous if diagnosis.alternatives.is_empty() => unrivalled(diagnosis),
         Verdict::Ambiguous => rivals(diagnosis),
         Verdict::Unexplained if diagnosis.effects.is_empty() => {
@@ -169,6 +172,12 @@ fn claim(effects: &[FittedEffect], wrong: &[WrongValue]) -> String {
 
 /// "Either A is missing, or the mass of link 1 is twice what the file says."
 fn rivals(diagnosis: &Diagnosis) -> String {
+    let either = either(diagnosis);
+    format!("E{}.", &either[1..])
+}
+
+/// The same within a sentence.
+pub(super) fn either(diagnosis: &Diagnosis) -> String {
     let others = diagnosis
         .alternatives
         .iter()
@@ -179,8 +188,8 @@ fn rivals(diagnosis: &Diagnosis) -> String {
     let more = claims.len().saturating_sub(SHOWN);
     claims.truncate(SHOWN);
     match more {
-        0 => format!("Either {}.", claims.join(", or ")),
-        more => format!("Either {}, or one of {more} more.", claims.join(", or ")),
+        0 => format!("either {}", claims.join(", or ")),
+        more => format!("either {}, or one of {more} more", claims.join(", or ")),
     }
 }
 
@@ -195,7 +204,7 @@ fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     }
     // The values of one of several explanations would be taken for an answer.
     let told = match diagnosis.verdict {
-        Verdict::Ambiguous => &[],
+        Verdict::Ambiguous if !one_sided::wants_proof_alone(diagnosis) => &[],
         _ => diagnosis.effects.as_slice(),
     };
     for effect in told {
@@ -251,6 +260,7 @@ fn next(diagnosis: &Diagnosis) -> Vec<String> {
         .then(|| format!("Search to the end: handstand diagnose {MODEL} {LOGS}{holdout}"));
     search_on
         .into_iter()
+        .chain(one_sided::prove(diagnosis))
         .chain(after_verdict(diagnosis))
         .collect()
 }

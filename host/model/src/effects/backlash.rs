@@ -1,6 +1,8 @@
 //! Backlash: play between joint and encoder.
 
-use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
+use super::{
+    EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site, StartUnknown,
+};
 
 /// Play operator: the reading stays while the angle is within gap / 2 of it, else it follows gap /
 /// 2 behind.
@@ -65,8 +67,10 @@ impl Law for Backlash {
         [encoded_rad - reading_rad, draws_away_rad_s]
     }
 
-    fn hidden_scale(&self, values: &[f64]) -> Option<f64> {
-        Some(values[0] / 2.0)
+    fn start_unknown(&self, values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Displacement {
+            most: values[0] / 2.0,
+        })
     }
 
     fn slip(&self, values: &[f64], [ahead_rad, draws_away_rad_s]: [f64; 2]) -> SenseMemory {

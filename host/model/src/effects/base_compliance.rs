@@ -1,7 +1,7 @@
 //! Base compliance: the bar, or the mount, gives way.
 
 use super::gear::HIGHEST_RAD_S;
-use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Rig, Scope, Site, StartUnknown};
 
 /// m x'' + c x' + k x = -F in both directions of the rig's plane, F being what the chain asks of
 /// its base; c by the damping ratio c / (2 sqrt(k m)).
@@ -98,6 +98,11 @@ impl BaseSpring {
 impl Law for BaseCompliance {
     fn acts_in_space(&self) -> bool {
         false
+    }
+
+    /// Where the base is.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Body)
     }
 
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {

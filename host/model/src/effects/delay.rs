@@ -1,6 +1,6 @@
 //! Transport delay: the drive acts on an input that is some time old.
 
-use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site};
+use super::{EffectInfo, Law, Needs, OnSlide, Parameter, Scope, Site, StartUnknown};
 
 /// u(t - T).
 #[derive(Debug)]
@@ -32,6 +32,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
      speed; input and residual correlate best at that lag",
     confused_with: &[
         "gear_compliance: both answer late; only a spring rings",
+        "drive_lag: both are late after a step; a delay rounds nothing off",
         "slew_limit: both are late after a step; a delay is the same for small and large ones",
         "sensor_lag: both lag; a filter also flattens fast motion, and it lags a free swing too",
         "time_offset: a late input and a late reading look alike while the drive moves the joint; \
@@ -45,5 +46,9 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for Delay {
     fn delay_s(&self, values: &[f64]) -> f64 {
         values[0]
+    }
+
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Input { is_slow: false })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     AtRest, Axis, DriveState, EffectInfo, Encoded, FrictionState, Gear, JointState, MemoryCell,
-    OnSlide, Rig, SenseMemory, Site, Slope, StepState, ValueBehind,
+    OnSlide, Rig, SenseMemory, Site, Slope, StartUnknown, StepState, ValueBehind,
 };
 use std::{fmt, ops};
 
@@ -91,16 +91,16 @@ pub trait Law: Sync + fmt::Debug {
         [0.0; 2]
     }
 
-    /// With memory: how far it may displace something that no reading tells of where a window
-    /// begins, rad (m), which is then an unknown of each window; a sensor's rate is one, too.
-    fn hidden_scale(&self, _values: &[f64]) -> Option<f64> {
+    /// What of the time before a simulation neither its start state nor any reading tells, and a
+    /// fit estimates. What remembers, trails or is late says so, [`StartUnknown::Nothing`] too.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
         None
     }
 
-    /// Command, drive or joint, with a hidden displacement: what it remembers where that is so much
-    /// in this state.
-    fn displaced(&self, _values: &[f64], displacement: f64, _at: &StepState) -> MemoryCell {
-        [displacement, 0.0]
+    /// Command, drive or joint, with memory: what it remembers where its unknown is so much in this
+    /// state.
+    fn recall_unknown(&self, _values: &[f64], unknown: f64, _at: &StepState) -> MemoryCell {
+        [unknown, 0.0]
     }
 
     /// What it remembers after a step of `step_s` that ended in this state.

@@ -1,8 +1,8 @@
 //! Protective fold-back: a servo that has pushed hard for too long gives less.
 
-use super::StepState;
 use super::{
     AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
+    StartUnknown, StepState,
 };
 
 /// tau s once |u| has been above a level for a time, which runs backwards below the level, from 0
@@ -58,6 +58,17 @@ impl Law for FoldBack {
 
     fn remembers(&self) -> bool {
         true
+    }
+
+    /// The time.
+    fn start_unknown(&self, values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Amount {
+            most: 2.0 * values[2],
+        })
+    }
+
+    fn recall_unknown(&self, values: &[f64], unknown: f64, _at: &StepState) -> MemoryCell {
+        [unknown, f64::from(unknown >= values[2])]
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {

@@ -71,6 +71,13 @@ impl Coupling {
         flank * (self.stiffness_nm_rad * pressed_rad + flank * damping_nm).max(0.0)
     }
 
+    /// By how much it is wound up at most by torques up to this, N m, and where its flanks meet,
+    /// rad.
+    pub fn reach_rad(&self, torque_nm: f64) -> (f64, f64) {
+        let pressed_rad = torque_nm.abs() / self.stiffness_nm_rad;
+        (self.half_gap_rad + pressed_rad, self.half_gap_rad)
+    }
+
     /// By how much it is wound up while it transmits this torque at rest, rad; where that is less
     /// than `light_nm`, hardly at a flank.
     pub fn wound_rad(&self, torque_nm: f64, light_nm: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! Backlash of the gear: motor and joint, each with its inertia, meet at either flank of a gap.
 
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
-use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
+use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site, StartUnknown};
 
 /// No torque within the gap; beyond it flanks that push, never pull, and hardly rebound.
 #[derive(Debug)]
@@ -65,6 +65,11 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 impl Law for GearBacklash {
     fn difference(&self) -> f64 {
         5e-2
+    }
+
+    /// Where in its play the motor is.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Body)
     }
 
     fn gear(&self, values: &[f64], gear: &mut Gear) {

@@ -1,7 +1,7 @@
 //! Gear compliance: the motor turns its joint through a spring.
 
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
-use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site};
+use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site, StartUnknown};
 
 /// k (q_m - q) + c (w_m - w) on the joint, and its reaction on a motor of inertia J, both as seen
 /// at the joint; c by the damping ratio c / (2 sqrt(k J)).
@@ -57,6 +57,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     looks_like: "after a step of the drive the arm rings at a frequency that gravity does not \
      make, and it starts late; slow motions are right",
     confused_with: &[
+        "drive_lag: both answer late; only a spring rings",
         "armature: a stiff gear is an inertia alone; only a spring rings and answers fast \
          commands late",
         "gear_backlash: both let motor and joint part; a spring parts in proportion to the load, \
@@ -91,6 +92,11 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 impl Law for GearCompliance {
     fn difference(&self) -> f64 {
         2e-3
+    }
+
+    /// How far the gear is wound up.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Body)
     }
 
     fn gear(&self, values: &[f64], gear: &mut Gear) {

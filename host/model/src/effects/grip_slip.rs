@@ -1,6 +1,8 @@
 //! Grip slip: the bar, or the shaft of an encoder, slips in what turns it.
 
-use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
+use super::{
+    EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site, StartUnknown,
+};
 
 /// Coulomb friction carries the sensor's shaft along, which it can speed up by no more than a; else
 /// it slips until both turn alike again. a is the friction's torque over the shaft's inertia: the
@@ -61,6 +63,11 @@ impl Law for GripSlip {
 
     fn slipped(&self, [encoded_rad, reading_rad, _, slip_rad_s]: SenseMemory) -> [f64; 2] {
         [encoded_rad - reading_rad, slip_rad_s]
+    }
+
+    /// A motion begins with its zero where the log has it, and held.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Nothing)
     }
 
     fn sense(

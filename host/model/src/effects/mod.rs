@@ -17,6 +17,7 @@ mod dead_zone;
 mod delay;
 mod direction_asymmetry;
 mod drive_asymmetry;
+mod drive_lag;
 mod effect;
 mod encoder_scale;
 mod encoder_zero;
@@ -66,7 +67,7 @@ pub use placebo::PLACEBO;
 pub use probe::ProbeVariable;
 pub use state::{
     AtRest, DriveState, Encoded, FrictionState, JointState, MemoryCell, Rig, SenseMemory, Slope,
-    StepState,
+    StartUnknown, StepState,
 };
 pub use torque_scale::TORQUE_SCALE;
 pub use unit_suffix::split_unit;
@@ -75,6 +76,7 @@ pub use unit_suffix::split_unit;
 pub static EFFECTS: &[Effect] = &[
     Effect::of(&delay::Delay, &delay::INFO),
     Effect::of(&slew_limit::SlewLimit, &slew_limit::INFO),
+    Effect::of(&drive_lag::DriveLag, &drive_lag::INFO),
     Effect::of(&dead_zone::DeadZone, &dead_zone::INFO),
     Effect::of(
         &supply_sensitivity::SupplySensitivity,

@@ -1,8 +1,8 @@
 //! Pre-sliding: before dry friction breaks away, it is a spring.
 
-use super::StepState;
 use super::{
     AtRest, EffectInfo, JointState, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
+    StartUnknown, StepState,
 };
 
 /// Dahl's law: -k z, dz/dq = 1 - (k z / f) sgn(dq). It remembers the deflection z and the angle at
@@ -92,12 +92,12 @@ impl Law for PreSliding {
         ]
     }
 
-    fn hidden_scale(&self, values: &[f64]) -> Option<f64> {
-        Some(slid(values))
+    fn start_unknown(&self, values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Displacement { most: slid(values) })
     }
 
-    fn displaced(&self, _values: &[f64], displacement: f64, at: &StepState) -> MemoryCell {
-        [displacement, at.angle_rad]
+    fn recall_unknown(&self, _values: &[f64], unknown: f64, at: &StepState) -> MemoryCell {
+        [unknown, at.angle_rad]
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, _step_s: f64) {

@@ -1,7 +1,9 @@
 //! Rate lag: the reading of a gyro or tachometer is low-pass filtered.
 
 use super::sensor_lag::filtered;
-use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
+use super::{
+    EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site, StartUnknown,
+};
 
 /// T y' + y = w, as `sensor_lag` filters an angle.
 #[derive(Debug)]
@@ -44,6 +46,11 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for RateLag {
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
+    }
+
+    /// It trails as the slope of its readings says.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Nothing)
     }
 
     fn sense(

@@ -1,6 +1,8 @@
 //! Sensor lag: the reading is low-pass filtered.
 
-use super::{EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site};
+use super::{
+    EffectInfo, Encoded, Law, Needs, OnSlide, Parameter, Scope, SenseMemory, Site, StartUnknown,
+};
 
 /// T y' + y = q: a first-order low-pass filter, solved exactly for an angle that moves in a
 /// straight line over the step, or a rate along a parabola.
@@ -34,6 +36,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     looks_like: "the reading trails in proportion to the speed and rounds off fast motion; a \
      resting arm is read rightly",
     confused_with: &[
+        "drive_lag: both trail and round off; a filter of the input leaves a free fall as it is",
         "delay: both trail; a delay shifts without rounding, and only what is driven",
         "viscous: both make the reading trail; friction takes energy from a free swing, a lag \
          does not",
@@ -50,6 +53,11 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for SensorLag {
     fn trail_rad(&self, values: &[f64], speed_rad_s: f64) -> Option<f64> {
         Some(values[0] * speed_rad_s)
+    }
+
+    /// It trails as the speed of its readings says.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Nothing)
     }
 
     fn sense(

@@ -1,7 +1,9 @@
 //! Slew limit: a servo's profile, or a driver's ramp, lets its input change no faster than so much.
 
-use super::StepState;
-use super::{AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope};
+use super::{
+    AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
+    StartUnknown, StepState,
+};
 
 /// |d input / dt| <= r. It remembers the input that it has reached.
 #[derive(Debug)]
@@ -33,6 +35,7 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     looks_like: "small changes of the input are obeyed at once, large steps arrive late and as a \
      ramp; the delay grows with the height of the step",
     confused_with: &[
+        "drive_lag: both arrive as a ramp; a filter takes the same time for small and large steps",
         "delay: both are late after a step; a delay is the same for small and large ones",
         "torque_saturation: both blunt strong commands; the limit of torque stays while the \
          command stays, a ramp ends",
@@ -45,6 +48,10 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for SlewLimit {
     fn remembers(&self) -> bool {
         true
+    }
+
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Input { is_slow: true })
     }
 
     /// Not a number: the first input is obeyed at once.

@@ -184,6 +184,33 @@ impl StepState {
     }
 }
 
+/// What an effect remembers, or waits for, where a simulation begins, and no reading tells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StartUnknown {
+    /// Nothing: the start state tells what it remembers.
+    Nothing,
+    /// Wherever a window begins: how far it has displaced something, at most so far either way,
+    /// rad (m); a sensor's displacement has a rate that is unknown, too.
+    Displacement {
+        /// rad (m).
+        most: f64,
+    },
+    /// Where a motion begins: the input that the drive was given before the log.
+    Input {
+        /// Whether the drive gets from that to its input slowly, not only late.
+        is_slow: bool,
+    },
+    /// Where a motion begins: where the body is that the effect puts beside the links, and how fast
+    /// it moves.
+    Body,
+    /// Where a motion begins: how much has come together before, from nothing, as in a drive that
+    /// has rested, to this.
+    Amount {
+        /// In the unit of what it remembers.
+        most: f64,
+    },
+}
+
 /// A joint that slides, or is about to.
 #[derive(Debug, Clone, Copy)]
 pub struct FrictionState {

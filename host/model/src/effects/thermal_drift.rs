@@ -1,8 +1,8 @@
 //! Thermal drift: the winding warms up under load, its resistance rises, and the torque falls.
 
-use super::StepState;
 use super::{
     AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
+    StartUnknown, StepState,
 };
 
 /// tau / (1 + r x), T x' = u^2 - x. It remembers x, the warmth: 0 cold, 1 after long at full duty.
@@ -24,8 +24,8 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
-    law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x = 0 where a log \
-     begins",
+    law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x from 0 (cold) to 1 where \
+     a log begins",
     parameters: &[
         Parameter::of(
             "rise",
@@ -58,6 +58,11 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 impl Law for ThermalDrift {
     fn remembers(&self) -> bool {
         true
+    }
+
+    /// The warmth.
+    fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
+        Some(StartUnknown::Amount { most: 1.0 })
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {

@@ -262,6 +262,7 @@ pub(crate) fn diagnosis() -> Diagnosis {
         windows: Vec::new(),
         search_ended: SearchEnded::Complete,
         left_out: Vec::new(),
+        shows_alone: Vec::new(),
     }
 }
 

@@ -18,6 +18,8 @@ impl WindowJacobian {
         let mut residual = self.residual.clone();
         residual.gemv(-1.0, &self.parameters, values, 1.0);
         residual.gemv(-1.0, &self.window_start, window_start, 1.0);
+        let of_motion = window_start.select_rows(&self.motion_start.places);
+        residual.gemv(-1.0, &self.motion_start.columns, &of_motion, 1.0);
         residual
     }
 
@@ -35,8 +37,11 @@ impl WindowJacobian {
             weights(&self.parameters, values),
             weights(&self.window_start, window_start),
         );
-        let all = of_values.dot(values) + of_node.dot(window_start);
+        let motion_step = window_start.select_rows(&self.motion_start.places);
+        let of_motion = weights(&self.motion_start.columns, &motion_step);
+        let all = of_values.dot(values) + of_node.dot(window_start) + of_motion.dot(&motion_step);
         if all > 0.0 {
+            (self.motion_start.columns).ger(1.0 / all, &missed, &of_motion, 1.0);
             self.parameters.ger(1.0 / all, &missed, &of_values, 1.0);
             self.window_start.ger(1.0 / all, &missed, &of_node, 1.0);
         }
@@ -53,22 +58,26 @@ fn weights(columns: &DMatrix<f64>, step: &DVector<f64>) -> DVector<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::motion_start::MotionStart;
     use super::*;
 
     #[test]
     fn a_corrected_jacobian_explains_the_step() {
+        let mut starts = DMatrix::from_row_slice(3, 2, &[0.5, 0.3, 0.5, -0.1, 0.0, 0.7]);
         let mut window = WindowJacobian {
+            motion: 0,
             residual: DVector::from_column_slice(&[1.0, -2.0, 0.5]),
             parameters: DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.3, -1.0, 2.0, 0.1]),
-            window_start: DMatrix::from_row_slice(3, 1, &[0.5, 0.5, 0.0]),
-            start_precision: DVector::from_element(1, 1.0),
-            start_pull: DVector::zeros(1),
-            start_edge: vec![0.0],
+            motion_start: MotionStart::parted_from(&mut starts, &[1]),
+            window_start: starts,
+            start_precision: DVector::from_element(2, 1.0),
+            start_pull: DVector::zeros(2),
+            start_edge: vec![0.0; 2],
         };
         let before = window.clone();
         let (values, window_start) = (
             DVector::from_vec(vec![0.3, -0.1]),
-            DVector::from_element(1, 0.2),
+            DVector::from_vec(vec![0.2, -0.4]),
         );
         let after = [0.4, -2.5, 0.1];
         window.correct(&values, &window_start, &after);

@@ -3,6 +3,7 @@
 
 use super::data::FitProblem;
 use super::fit::Fit;
+use super::motion_start::reduced_parameters;
 use nalgebra::{DMatrix, DVector};
 
 /// Length of a cluster, s: longer than a servo arm rests between two movements. Where a joint rests
@@ -42,13 +43,13 @@ pub(super) fn clusters(fit: &Fit, data: &FitProblem) -> Vec<Cluster> {
     let stretches: Vec<Stretches> = { 0..data.motions.len() }
         .map(|motion| Stretches::of(data, motion, length_s))
         .collect();
-    for ((window, jacobian), residuals) in data
+    let reduced = reduced_parameters(&fit.jacobian);
+    for ((window, columns), residuals) in data
         .windows
         .iter()
-        .zip(&fit.jacobian)
+        .zip(&reduced)
         .zip(&fit.residuals.windows)
     {
-        let columns = jacobian.reduced_parameters();
         let samples = window.samples.len();
         let place = |k: usize| {
             let stretches = &stretches[window.motion];
@@ -88,14 +89,13 @@ pub(super) fn clusters(fit: &Fit, data: &FitProblem) -> Vec<Cluster> {
 pub(super) fn pull_of_rests(fit: &Fit, data: &FitProblem) -> DMatrix<f64> {
     let count = fit.free.len();
     let mut pull = DMatrix::zeros(count, count);
-    for (window, jacobian) in data.windows.iter().zip(&fit.jacobian) {
+    let reduced = reduced_parameters(&fit.jacobian);
+    for (window, columns) in data.windows.iter().zip(&reduced) {
         let samples = window.samples.len();
         let time_s = &data.motions[window.motion].time_s[window.samples.clone()];
-        let mut columns = None;
         for signal in (0..data.signals.len()).filter(|signal| data.counts(*signal)) {
             let readings = &data.measured(window.motion, signal)[window.samples.clone()];
             for rest in rests(time_s, readings) {
-                let columns = columns.get_or_insert_with(|| jacobian.reduced_parameters());
                 let rows = columns.rows(signal * samples + rest.start, rest.len());
                 let together = rows.row_sum();
                 pull += together.tr_mul(&together);

@@ -82,7 +82,9 @@ fn residual_variance(fit: &Fit) -> f64 {
         .iter()
         .flat_map(|w| w.window_start.column_iter());
     let start_states = columns.filter(|column| column.amax() > 0.0).count();
-    let unknowns = fit.free.len() + start_states;
+    let motions = fit.jacobian.chunk_by(|a, b| a.motion == b.motion);
+    let of_motions: usize = motions.map(|w| w[0].motion_start.places.len()).sum();
+    let unknowns = fit.free.len() + start_states + of_motions;
     let freedom = fit.residuals.count().saturating_sub(unknowns).max(1);
     fit.residuals.cost() / freedom as f64
 }

@@ -1,6 +1,7 @@
 //! What data say of a fit's free values, and what of the misfit those values could still remove.
 
 use super::fit::Fit;
+use super::motion_start::MotionStarts;
 use nalgebra::{DMatrix, DVector};
 
 /// Normal equations of a fit's free values with the windows' start states eliminated, in units of
@@ -23,7 +24,8 @@ impl Fit {
         Information {
             matrix: normal.matrix,
             gradient: normal.gradient,
-            cost: self.jacobian.iter().map(|w| w.reduced_cost()).sum(),
+            cost: self.jacobian.iter().map(|w| w.reduced_cost()).sum::<f64>()
+                - MotionStarts::of(&self.jacobian).removable(&self.jacobian),
         }
     }
 

@@ -2,6 +2,7 @@
 //! unknown of the windows' start states, all in parallel.
 
 use super::levenberg_marquardt::LevenbergMarquardt;
+use super::motion_start::MotionStart;
 use super::normal::WindowJacobian;
 use super::residual::motion_residuals;
 use crate::model::ParameterPath;
@@ -62,7 +63,7 @@ impl LevenbergMarquardt<'_> {
                     differences.of(base, motion, at, row, column)
                 }
             });
-            self.window(w, parameters, known.window_start.clone())
+            self.window(w, parameters, known.all_starts())
         });
         windows.collect()
     }
@@ -108,23 +109,31 @@ impl LevenbergMarquardt<'_> {
         })
     }
 
+    /// Unknowns of a start that are those of a whole motion.
+    fn of_motion(&self) -> Vec<usize> {
+        let hidden = self.hidden.iter().zip(3 * self.data.joints()..);
+        let of_motion = hidden.filter(|(hidden, _)| hidden.quantity.is_of_motion());
+        of_motion.map(|(_, unknown)| unknown).collect()
+    }
+
     fn window(
         &self,
         w: usize,
         parameters: DMatrix<f64>,
-        window_start: DMatrix<f64>,
+        mut window_start: DMatrix<f64>,
     ) -> WindowJacobian {
         let (guess, own) = (&self.guesses[w], &self.fit.window_starts[w]);
-        let (start_precision, start_pull) = guess.prior(own);
         let mut window = WindowJacobian {
+            motion: self.data.windows[w].motion,
             residual: DVector::from_column_slice(&self.fit.residuals.windows[w]),
             parameters,
+            motion_start: MotionStart::parted_from(&mut window_start, &self.of_motion()),
+            start_precision: DVector::zeros(window_start.ncols()),
+            start_pull: DVector::zeros(window_start.ncols()),
+            start_edge: vec![0.0; window_start.ncols()],
             window_start,
-            start_precision,
-            start_pull,
-            start_edge: guess.edges(own),
         };
-        window.hold_edges();
+        window.know_start(guess.prior(own), guess.edges(own));
         window
     }
 
@@ -153,6 +162,12 @@ impl LevenbergMarquardt<'_> {
             // Towards the middle: beyond a flank is nothing.
             Some((HiddenQuantity::Share { .. } | HiddenQuantity::Before { .. }, _)) => {
                 -SHARE_DIFFERENCE.copysign(value)
+            }
+            Some((HiddenQuantity::Place { .. } | HiddenQuantity::Speed { .. }, _)) => {
+                -BODY_DIFFERENCE.copysign(value)
+            }
+            Some((HiddenQuantity::Amount { .. }, _)) => {
+                -SHARE_DIFFERENCE.copysign(value - SHARE_DIFFERENCE)
             }
             Some((HiddenQuantity::Rate, joint)) => step(1, joint),
         };
@@ -186,6 +201,10 @@ const DIFFERENCES: [f64; 3] = [0.1, 1.0, 20.0];
 
 /// Step of the difference in a share of what something hidden can be displaced by.
 const SHARE_DIFFERENCE: f64 = 0.02;
+
+/// The same of where a body may be, and how fast it may move: both are far more than they mostly
+/// are.
+const BODY_DIFFERENCE: f64 = 0.002;
 
 /// Step of the finite difference of a value.
 pub(super) fn difference(path: &ParameterPath, value: f64) -> f64 {

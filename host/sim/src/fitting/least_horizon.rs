@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::model::{MeasuredSignal, Model};
 use crate::motion::Motion;
 use crate::output::number::given;
-use crate::sim::{HiddenQuantity, Plant};
+use crate::sim::Plant;
 
 /// Readings of a window for each angle and speed of its start state, of which no more than a third
 /// goes into that.
@@ -88,9 +88,8 @@ fn least_samples(model: &Model, motion: &Motion) -> usize {
     let signals = measured.count() + model.log.rate_joints().len();
     let plant = Plant::new(model, motion);
     let hidden = plant.hidden().iter();
-    // What was told before the log began is unknown to its first window alone.
-    let hidden =
-        hidden.filter(|unknown| !matches!(unknown.quantity, HiddenQuantity::Before { .. }));
+    // What was before the log is unknown once, not to every window.
+    let hidden = hidden.filter(|unknown| !unknown.quantity.is_of_motion());
     (READINGS * 2 * model.link_count() + hidden.count()).div_ceil(signals.max(1))
 }
 

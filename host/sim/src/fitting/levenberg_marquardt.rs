@@ -1,11 +1,11 @@
 //! Bounded least squares by Levenberg-Marquardt on the multiple-shooting residual: Levenberg
 //! (1944), Marquardt (1963).
 
+use super::before_log::begin_motions;
 use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
 use super::prior::ValuePrior;
 use super::residual::{left_hidden, residuals};
-use super::told_before::begin_as_told;
 use super::window_start::{StartGuess, WindowStart};
 use crate::model::Model;
 use crate::sim::HiddenUnknown;
@@ -56,16 +56,16 @@ impl<'a> LevenbergMarquardt<'a> {
         }
         if !hidden.is_empty() {
             let left = left_hidden(&fit.model, data, &fit.window_starts);
-            for ((window_start, guess), left) in
-                fit.window_starts.iter_mut().zip(&mut guesses).zip(&left)
-            {
-                guess.hide(&hidden, left);
+            let starts = fit.window_starts.iter_mut().zip(&mut guesses);
+            let windows = data.windows.iter().zip(&left);
+            for ((window_start, guess), (window, left)) in starts.zip(windows) {
+                guess.hide(&hidden, left, data.windows_of(window.motion).count());
                 window_start.hide_as(guess);
             }
             fit.residuals = residuals(&fit.model, data, &fit.window_starts);
             fit.simulations += 2;
             if is_new {
-                begin_as_told(&mut fit, data, &hidden);
+                begin_motions(&mut fit, data, &hidden);
             }
         }
         LevenbergMarquardt {
@@ -153,9 +153,7 @@ impl<'a> LevenbergMarquardt<'a> {
                 &step.window_starts[w],
                 &fit.residuals.windows[w],
             );
-            (window.start_precision, window.start_pull) = guess.prior(window_start);
-            window.start_edge = guess.edges(window_start);
-            window.hold_edges();
+            window.know_start(guess.prior(window_start), guess.edges(window_start));
         }
     }
 

@@ -9,6 +9,7 @@
 mod add;
 mod added;
 mod assumed;
+mod before_log;
 mod broyden;
 mod candidate;
 mod cluster;
@@ -32,6 +33,7 @@ mod levenberg_marquardt;
 #[cfg(test)]
 mod log_tests;
 mod mixture;
+mod motion_start;
 mod noise;
 mod normal;
 mod polish;
@@ -51,7 +53,6 @@ mod staged;
 mod step;
 mod step_size;
 mod student;
-mod told_before;
 mod told_values;
 mod ways;
 mod window_start;

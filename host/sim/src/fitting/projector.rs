@@ -2,6 +2,7 @@
 //! as what is known of the parameters beforehand lets them.
 
 use super::fit::Fit;
+use super::motion_start::{MotionStarts, reduced_parameters};
 use super::normal::WindowJacobian;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -9,6 +10,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 #[derive(Debug)]
 pub struct Projector<'a> {
     windows: &'a [WindowJacobian],
+    /// What was before the log of each motion.
+    motions: MotionStarts,
     /// Parameter columns with the start states' part taken out.
     reduced: Vec<DMatrix<f64>>,
     normal: Option<Cholesky<f64, Dyn>>,
@@ -17,11 +20,7 @@ pub struct Projector<'a> {
 impl<'a> Projector<'a> {
     /// Projection off everything this fit has freed.
     pub fn new(fit: &'a Fit) -> Self {
-        let reduced: Vec<DMatrix<f64>> = fit
-            .jacobian
-            .iter()
-            .map(WindowJacobian::reduced_parameters)
-            .collect();
+        let reduced = reduced_parameters(&fit.jacobian);
         let count = fit.free.len();
         let mut normal = DMatrix::from_diagonal(&fit.value_prior().precision);
         for window in &reduced {
@@ -32,6 +31,7 @@ impl<'a> Projector<'a> {
         }
         Projector {
             windows: &fit.jacobian,
+            motions: MotionStarts::of(&fit.jacobian),
             reduced,
             normal: normal.cholesky().filter(|_| count > 0),
         }
@@ -63,13 +63,15 @@ impl<'a> Projector<'a> {
 
     /// A change of the weighted residual, window by window, less what the fit could make of it.
     pub fn off(&self, change: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let mut left: Vec<DVector<f64>> = change
+        let column = |change: &Vec<f64>| DMatrix::from_column_slice(change.len(), 1, change);
+        let mut left: Vec<DMatrix<f64>> = change
             .iter()
             .zip(self.windows)
-            .map(|(change, window)| window.reduced(DVector::from_column_slice(change)))
+            .map(|(change, window)| window.reduced(&column(change)))
             .collect();
+        self.motions.take_out(&mut left);
         if let Some(normal) = &self.normal {
-            let mut right = DVector::zeros(self.reduced[0].ncols());
+            let mut right = DMatrix::zeros(self.reduced[0].ncols(), 1);
             for (left, reduced) in left.iter().zip(&self.reduced) {
                 right += reduced.tr_mul(left);
             }

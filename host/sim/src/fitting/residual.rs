@@ -145,6 +145,14 @@ pub(super) fn left_hidden(
             );
             *first = memory.hidden(&plant);
         }
+        // What is unknown of the motion is one thing in all of its windows.
+        if let Some((first, others)) = left.split_first_mut() {
+            for (k, unknown) in plant.hidden().iter().enumerate() {
+                if unknown.quantity.is_of_motion() {
+                    others.iter_mut().for_each(|left| left[k] = first[k]);
+                }
+            }
+        }
         left
     };
     let left: Vec<Vec<Vec<f64>>> = motions.map(of_motion).collect();

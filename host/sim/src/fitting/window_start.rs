@@ -40,7 +40,7 @@ const LEAST_DEVIATIONS: [f64; 3] = [2e-4, 4e-3, 0.1];
 /// window before left, in whose course errors have grown; and by which share of all it can be.
 const HIDDEN_DEVIATIONS: f64 = 6.0;
 const SHARE_DEVIATION: f64 = 0.5;
-/// How much of the first input may not have been there before the log begins: all or nothing.
+/// What was before a log is as much of the share that it can be: anything.
 const BEFORE_DEVIATION: f64 = 1.0;
 /// Half the span of the samples that determine a window's start.
 pub(super) const REACH_S: f64 = 0.06;
@@ -78,6 +78,11 @@ impl StartGuess {
                 deviation[at] = least
                     + sigma[joint] * wide.gains[order]
                     + (wide.derivatives[order] - near.derivatives[order]).abs();
+                // A sensor that trails tells a change of the acceleration from nowhere to this, or
+                // back, too late.
+                if order == 2 {
+                    deviation[at] += wide.derivatives[order].abs();
+                }
             }
             let speed = joints + joint;
             let logged = motion.velocity_rad_s[joint].as_ref().map(|v| v[first]);
@@ -97,9 +102,11 @@ impl StartGuess {
     }
 
     /// Has what is hidden as unknowns, too: expected as it is `left` by the window before, the less
-    /// surely the less the samples say of its joint.
-    pub fn hide(&mut self, hidden: &[HiddenUnknown], left: &[f64]) {
+    /// surely the less the samples say of its joint. What is unknown of a motion each of its
+    /// `windows` has, as much of the same doubt.
+    pub fn hide(&mut self, hidden: &[HiddenUnknown], left: &[f64], windows: usize) {
         let joints = self.window_start.unknowns.len() / 3;
+        let before = BEFORE_DEVIATION * (windows.max(1) as f64).sqrt();
         for (unknown, left) in hidden.iter().zip(left) {
             let doubt =
                 |order: usize| HIDDEN_DEVIATIONS * self.deviation[order * joints + unknown.joint];
@@ -108,7 +115,11 @@ impl StartGuess {
                     let deviation = (doubt(0) / scale).min(SHARE_DEVIATION);
                     (left.clamp(-1.0, 1.0), deviation, (-1.0, 1.0))
                 }
-                HiddenQuantity::Before { .. } => (0.0, BEFORE_DEVIATION, (-1.0, 1.0)),
+                HiddenQuantity::Before { .. } => (0.0, before, (-1.0, 1.0)),
+                HiddenQuantity::Amount { .. } => (0.0, before, (0.0, 1.0)),
+                HiddenQuantity::Place { .. } | HiddenQuantity::Speed { .. } => {
+                    (left.clamp(-1.0, 1.0), before, (-1.0, 1.0))
+                }
                 HiddenQuantity::Rate => {
                     let reach = REACH_DEVIATIONS * doubt(1);
                     let middle = left.clamp(-reach, reach);

@@ -1,6 +1,9 @@
-//! Unknowns of a stretch's beginning that no reading tells: where in its play a joint is and how
-//! fast it crosses it, how far dry friction is bent before it slides, what a drive that is late, or
-//! gets on slowly, was told before the log begins.
+//! Unknowns that no reading tells. Of every stretch's beginning: where in its play a joint is and
+//! how fast it crosses it, how far dry friction is bent before it slides. Of a motion's beginning:
+//! which input a drive had that is late, or gets on slowly, before the log; how warm it was; for
+//! how long it had been overloaded; where its motor was behind a gear, or the base. Each effect
+//! says which it has
+//! ([`Law::start_unknown`](crate::effects::Law::start_unknown)).
 //!
 //! A stretch takes over what the one before came to remember. That is as wrong at its end as the
 //! errors of its start have grown by then, and in an unstable motion they grow fast. How far a gear
@@ -10,7 +13,9 @@ use super::joint_plan::{ActiveEffect, JointPlan};
 use super::memory::{EffectMemory, PlantMemory};
 use super::plant::Plant;
 use super::sensor_state::SensorState;
-use crate::effects::StepState;
+use crate::effects::{BaseSpring, StartUnknown, StepState};
+use crate::model::Drive;
+use crate::motion::Motion;
 
 /// One such unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,12 +38,61 @@ pub enum HiddenQuantity {
     },
     /// How fast that changes, rad/s (m/s).
     Rate,
-    /// By how much more than the first input of the log the one before it was, as a share of it:
-    /// -1 where the log begins with the first command.
+    /// Of a motion: by how much more than the first input of the log the one before it was, as a
+    /// share, -1 to 1, of how far they may be apart.
     Before {
         /// Whether the drive gets from that to its input slowly, not only late.
         is_slow: bool,
     },
+    /// Of a motion: where a body beside the links is, as a share, -1 to 1, of its scale.
+    Place {
+        /// rad (m) per 1.
+        scale: f64,
+        /// Share at which the flanks of a gear meet.
+        flank: f64,
+    },
+    /// Of a motion: how fast it moves, as a share likewise.
+    Speed {
+        /// rad/s (m/s) per 1.
+        scale: f64,
+    },
+    /// Of a motion: how much had come together before the log, as a share, 0 to 1, of the most.
+    Amount {
+        /// In the unit of what the effect remembers.
+        most: f64,
+    },
+}
+
+impl HiddenQuantity {
+    /// Whether it is of the beginning of a motion, not of every stretch.
+    pub fn is_of_motion(self) -> bool {
+        matches!(
+            self,
+            HiddenQuantity::Before { .. }
+                | HiddenQuantity::Amount { .. }
+                | HiddenQuantity::Place { .. }
+                | HiddenQuantity::Speed { .. }
+        )
+    }
+}
+
+/// By how many times an input before the log may be farther from the first than those of the log.
+const BEYOND: f64 = 1.5;
+
+/// How many times a drive's torque at standstill, or the weight on a base, may press.
+const LOADED: f64 = 2.0;
+
+/// What is unknown of a body beside the links that may be displaced by so much, rad (m).
+fn body(most: f64, flank: f64, natural_rad_s: f64) -> [HiddenQuantity; 2] {
+    [
+        HiddenQuantity::Place {
+            scale: most,
+            flank: flank / most,
+        },
+        HiddenQuantity::Speed {
+            scale: most * natural_rad_s,
+        },
+    ]
 }
 
 /// Where it is remembered, by the cell there.
@@ -50,8 +104,11 @@ enum HiddenMemory {
 }
 
 impl HiddenUnknown {
-    /// Those of a plant's joints.
-    pub(super) fn all(joints: &[JointPlan]) -> Vec<HiddenUnknown> {
+    /// Those of a plant's joints, and of its base with the first of its cells and its load, N.
+    pub(super) fn all(
+        joints: &[JointPlan],
+        base: Option<((BaseSpring, usize), f64)>,
+    ) -> Vec<HiddenUnknown> {
         let mut all = Vec::new();
         let mut sensors = 0;
         for (joint, plan) in joints.iter().enumerate() {
@@ -62,22 +119,45 @@ impl HiddenUnknown {
                     place,
                 });
             };
-            let share = |scale| HiddenQuantity::Share { scale };
             for e in &plan.sense {
-                if let Some(scale) = e.effect.hidden_scale(e.values()) {
-                    add(HiddenMemory::Sensor(sensors), share(scale));
-                    add(HiddenMemory::Sensor(sensors), HiddenQuantity::Rate);
+                if let Some(StartUnknown::Displacement { most: scale }) = e.start_unknown() {
+                    let place = HiddenMemory::Sensor(sensors);
+                    add(place, HiddenQuantity::Share { scale });
+                    add(place, HiddenQuantity::Rate);
                 }
                 sensors += 1;
             }
             for (e, cell) in plan.remembering() {
-                if let Some(scale) = e.effect.hidden_scale(e.values()) {
-                    add(HiddenMemory::Effect(cell), share(scale));
+                let quantity = match e.start_unknown() {
+                    Some(StartUnknown::Displacement { most: scale }) => {
+                        HiddenQuantity::Share { scale }
+                    }
+                    Some(StartUnknown::Amount { most }) => HiddenQuantity::Amount { most },
+                    _ => continue,
+                };
+                add(HiddenMemory::Effect(cell), quantity);
+            }
+            if let (Some(coupling), Some(cell)) = (plan.coupling, plan.gear_cell) {
+                let (most, flank) = coupling.reach_rad(LOADED * plan.full_torque_nm);
+                let place = HiddenMemory::Effect(cell);
+                for quantity in body(most, flank, coupling.natural_rad_s) {
+                    add(place, quantity);
                 }
             }
-            let is_slow = plan.follows_slowly();
-            if plan.is_late || is_slow {
+            if let Some(is_slow) = plan.depends_on_input_before {
                 add(HiddenMemory::Input, HiddenQuantity::Before { is_slow });
+            }
+        }
+        if let Some(((spring, cell), load_n)) = base {
+            let most = LOADED * load_n / spring.stiffness_n_m;
+            for cell in [cell, cell + 1] {
+                let of_body =
+                    body(most, 0.0, spring.natural_rad_s()).map(|quantity| HiddenUnknown {
+                        joint: 0,
+                        quantity,
+                        place: HiddenMemory::Effect(cell),
+                    });
+                all.extend(of_body);
             }
         }
         all
@@ -85,7 +165,10 @@ impl HiddenUnknown {
 
     /// Whether it is of the same kind at the same place.
     pub fn is_alike(&self, other: &HiddenUnknown) -> bool {
-        let kind = |unknown: &HiddenUnknown| std::mem::discriminant(&unknown.quantity);
+        let kind = |unknown: &HiddenUnknown| {
+            let is_slow = unknown.quantity == HiddenQuantity::Before { is_slow: true };
+            (std::mem::discriminant(&unknown.quantity), is_slow)
+        };
         (self.joint, self.place, kind(self)) == (other.joint, other.place, kind(other))
     }
 
@@ -95,7 +178,9 @@ impl HiddenUnknown {
             HiddenQuantity::Share { scale } if scale > 0.0 => displacement / scale,
             HiddenQuantity::Share { .. } => 0.0,
             HiddenQuantity::Rate => rate,
-            HiddenQuantity::Before { .. } => 0.0,
+            HiddenQuantity::Place { scale, .. } => displacement / scale,
+            HiddenQuantity::Speed { scale } => rate / scale,
+            HiddenQuantity::Before { .. } | HiddenQuantity::Amount { .. } => 0.0,
         }
     }
 
@@ -104,21 +189,51 @@ impl HiddenUnknown {
         match self.quantity {
             HiddenQuantity::Share { scale } => at[0] = scale * value,
             HiddenQuantity::Rate => at[1] = value,
-            HiddenQuantity::Before { .. } => {}
+            HiddenQuantity::Place { scale, .. } => at[0] = scale * value,
+            HiddenQuantity::Speed { scale } => at[1] = scale * value,
+            HiddenQuantity::Before { .. } | HiddenQuantity::Amount { .. } => {}
         }
     }
 }
 
 impl Plant {
-    /// What drives were told before the log begins, as a share of its first input, with these
-    /// values of what is hidden, in the order of [`Plant::hidden`].
-    pub(super) fn put_before(&self, values: &[f64], share: &mut [f64]) {
-        share.fill(1.0);
+    /// Inputs of drives before the log of a motion begins with these values of what is hidden, in
+    /// the order of [`Plant::hidden`]; with none, its first ones.
+    pub(super) fn inputs_before(&self, motion: &Motion, values: &[f64]) -> Vec<f64> {
+        let first = |input: &Option<Vec<f64>>| input.as_ref()?.first().copied();
+        let inputs = motion.input.iter();
+        let mut before: Vec<f64> = inputs.map(|input| first(input).unwrap_or(0.0)).collect();
+        before.resize(self.len(), 0.0);
         for (unknown, value) in self.hidden.iter().zip(values) {
             if unknown.place == HiddenMemory::Input {
-                share[unknown.joint] = 1.0 + value;
+                before[unknown.joint] += value * self.before_span(motion, unknown.joint);
             }
         }
+        before
+    }
+
+    /// How far the input before the log may be from the first one: anywhere that inputs of the
+    /// motion go, none, full duty, or a goal where the joint stands, and half as far beyond.
+    pub fn before_span(&self, motion: &Motion, joint: usize) -> f64 {
+        let Some((first, inputs)) =
+            (motion.input[joint].as_deref()).and_then(|input| Some((*input.first()?, input)))
+        else {
+            return 0.0;
+        };
+        let standing = motion.position_rad[joint].first().copied();
+        let full: &[f64] = match self.joints[joint].drive {
+            Drive::Position { .. } => standing.as_slice(),
+            Drive::Duty(_) => &[-1.0, 1.0],
+            Drive::Torque | Drive::Speed { .. } | Drive::Passive => &[],
+        };
+        let reached = inputs.iter().chain(full).chain(&[0.0]);
+        let distances = reached.map(|input| (input - first).abs());
+        BEYOND * distances.filter(|far| far.is_finite()).fold(0.0, f64::max)
+    }
+
+    /// Whether the inputs of a joint's drive are goals of its angle.
+    pub fn is_told_angles(&self, joint: usize) -> bool {
+        matches!(self.joints[joint].drive, Drive::Position { .. })
     }
 
     /// What no reading tells of where a stretch begins.
@@ -181,22 +296,34 @@ impl SensorState {
 }
 
 impl EffectMemory {
-    /// Has commands been obeyed for long that were so much of the log's first input, by joint.
-    pub(super) fn obeyed_before(
-        &mut self,
-        plant: &Plant,
-        inputs: &[Option<Vec<f64>>],
-        share: &[f64],
-    ) {
-        for (joint, plan) in plant.joints.iter().enumerate() {
-            let first = inputs[joint].as_ref().and_then(|input| input.first());
-            let (Some(first), true) = (first, plan.follows_slowly()) else {
+    /// Has drives had these inputs for long where a motion begins, by joint, and as much come
+    /// together as these values say, in the order of [`Plant::hidden`]: where there are none, as
+    /// much as nothing earlier makes.
+    pub(super) fn begin_motion(&mut self, plant: &Plant, before: &[f64], values: &[f64]) {
+        let state = StepState::at_rest(0.0);
+        for (plan, &input) in plant.joints.iter().zip(before) {
+            for (e, cell) in plan.remembering() {
+                if matches!(e.start_unknown(), Some(StartUnknown::Input { .. })) {
+                    self.0[cell] = e.effect.recall_unknown(e.values(), input, &state);
+                }
+            }
+        }
+        for (unknown, value) in plant.hidden.iter().zip(values) {
+            let HiddenMemory::Effect(at) = unknown.place else {
                 continue;
             };
-            let told = share[joint] * first;
-            for (e, cell) in plan.command.iter().filter_map(|e| Some((e, e.cell?))) {
-                let state = StepState::at_rest(0.0);
-                self.0[cell] = e.effect.displaced(e.values(), told, &state);
+            if matches!(
+                unknown.quantity,
+                HiddenQuantity::Place { .. } | HiddenQuantity::Speed { .. }
+            ) {
+                unknown.put(&mut self.0[at], *value);
+            }
+            let HiddenQuantity::Amount { most } = unknown.quantity else {
+                continue;
+            };
+            let mut remembering = plant.joints[unknown.joint].remembering();
+            if let Some((e, _)) = remembering.find(|(_, cell)| *cell == at) {
+                self.0[at] = e.effect.recall_unknown(e.values(), most * value, &state);
             }
         }
     }
@@ -205,6 +332,9 @@ impl EffectMemory {
     /// order of [`Plant::hidden`].
     pub(super) fn put_hidden(&mut self, plant: &Plant, angle: &[f64], values: &[f64]) {
         for (unknown, value) in plant.hidden.iter().zip(values) {
+            if unknown.quantity.is_of_motion() {
+                continue;
+            }
             if let HiddenMemory::Effect(cell) = unknown.place {
                 let joint = unknown.joint;
                 let mut remembering = plant.joints[joint].remembering();
@@ -212,7 +342,7 @@ impl EffectMemory {
                     let mut at = [0.0; 2];
                     unknown.put(&mut at, *value);
                     let state = StepState::at_rest(angle[joint] - plant.zeros_rad[joint]);
-                    self.0[cell] = e.effect.displaced(e.values(), at[0], &state);
+                    self.0[cell] = e.effect.recall_unknown(e.values(), at[0], &state);
                 }
             }
         }

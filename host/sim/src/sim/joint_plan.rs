@@ -1,6 +1,6 @@
 //! What acts on one joint, sorted by where it acts.
 
-use crate::effects::{Coupling, Effect, Gear, MemoryCell, Site};
+use crate::effects::{Coupling, Effect, Gear, MemoryCell, Site, StartUnknown};
 use crate::model::Drive;
 
 /// Most values an effect has.
@@ -22,6 +22,11 @@ impl ActiveEffect {
         &self.values[..self.count]
     }
 
+    /// What no reading tells of where it begins.
+    pub fn start_unknown(&self) -> Option<StartUnknown> {
+        self.effect.start_unknown(self.values())
+    }
+
     /// What it remembers, among the cells of the plant.
     #[inline]
     pub fn recall(&self, cells: &[MemoryCell]) -> MemoryCell {
@@ -37,8 +42,9 @@ pub(super) struct JointPlan {
     /// Whether the drive's torque follows from its input alone.
     pub follows_input: bool,
     pub delay_s: f64,
-    /// Whether anything may delay the input, by nothing too.
-    pub is_late: bool,
+    /// Where what it does depends on the input before the log: whether it gets from that to its
+    /// input slowly, not only late.
+    pub depends_on_input_before: Option<bool>,
     pub command: Vec<ActiveEffect>,
     pub torque: Vec<ActiveEffect>,
     pub friction: Vec<ActiveEffect>,
@@ -66,7 +72,7 @@ impl JointPlan {
             full_torque_nm: drive.motor().map_or(1.0, |m| m.stall_torque_nm),
             follows_input: false,
             delay_s: 0.0,
-            is_late: false,
+            depends_on_input_before: None,
             command: Vec::new(),
             torque: Vec::new(),
             friction: Vec::new(),
@@ -123,11 +129,6 @@ impl JointPlan {
             .filter_map(|e| Some((e, e.cell?)))
     }
 
-    /// Whether what the drive follows depends on what it was told before.
-    pub fn follows_slowly(&self) -> bool {
-        self.command.iter().any(|e| e.cell.is_some())
-    }
-
     /// Leaves those sensors that a rate is read through, where nothing else is read.
     pub fn keep_rate_sensors(&mut self) {
         self.sense
@@ -177,11 +178,12 @@ impl JointPlan {
             cell: None,
         };
         active.values[..values.len()].copy_from_slice(values);
+        if let Some(StartUnknown::Input { is_slow }) = effect.start_unknown(values) {
+            let known = self.depends_on_input_before.unwrap_or(false);
+            self.depends_on_input_before = Some(known || is_slow);
+        }
         match effect.info().site {
-            Site::Timing => {
-                self.delay_s += effect.delay_s(values);
-                self.is_late = true;
-            }
+            Site::Timing => self.delay_s += effect.delay_s(values),
             Site::Command => self.command.push(active),
             Site::Drive => self.output.push(active),
             Site::Gear => self.add_gear(effect, values),

@@ -17,6 +17,8 @@ pub struct PlantMemory {
     /// Sample at which the stretch before ended, and in which state; none where nothing is
     /// remembered.
     pub(super) ended: Option<(usize, StartState)>,
+    /// Inputs of the drives before the log of the motion, by joint; its first ones where empty.
+    pub(super) before: Vec<f64>,
     /// What is hidden where the next stretch begins, in the order of [`Plant::hidden`]; as
     /// remembered where empty.
     pub(super) begins: Vec<f64>,
@@ -73,8 +75,7 @@ impl EffectMemory {
         step_s: f64,
     ) {
         for (joint, plan) in plant.joints.iter().enumerate() {
-            let mut remembering = plan.remembering().peekable();
-            if remembering.peek().is_none() {
+            if plan.remembering().next().is_none() {
                 continue;
             }
             let input = self.obeyed(plan, inputs[joint], step_s);
@@ -87,7 +88,18 @@ impl EffectMemory {
                 angle_rad: angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed[joint],
             };
-            for (e, cell) in remembering {
+            // Each of the command's effects gets what those before it let through.
+            let mut arriving = at;
+            for (e, cell) in plan.command.iter().filter_map(|e| Some((e, e.cell?))) {
+                let memory = self.0[cell];
+                (e.effect).remember(e.values(), &mut self.0[cell], &arriving, step_s);
+                if at.energised {
+                    let through = e.effect.obey(e.values(), memory, arriving.input, step_s);
+                    arriving.input = through;
+                }
+            }
+            let of_command = plan.command.iter().filter(|e| e.cell.is_some()).count();
+            for (e, cell) in plan.remembering().skip(of_command) {
                 (e.effect).remember(e.values(), &mut self.0[cell], &at, step_s);
             }
         }

@@ -75,10 +75,9 @@ fn predicted<R: Rows>(
     let is_first = stretch.start == 0 && memory.ended.is_none();
     let mut run = Run::<R>::new(plant, motion, start, std::mem::take(memory));
     (run.stepper.memory()).put_hidden(plant, &start.angle_rad, &hidden);
-    plant.put_before(&hidden, &mut run.before);
     if is_first {
-        let effects = run.stepper.memory();
-        effects.obeyed_before(plant, &motion.input, &run.before);
+        run.before = plant.inputs_before(motion, &hidden);
+        (run.stepper.memory()).begin_motion(plant, &run.before, &hidden);
     }
     if plant.has_offsets && samples > 0 {
         return run.record_offset(stretch, memory, readings);
@@ -128,7 +127,7 @@ struct Run<'a, R: Rows> {
     sensors: SensorState,
     inputs: Vec<DriveInput>,
     cursors: Vec<usize>,
-    /// What each drive was told before the log begins, as a share of the first input.
+    /// The input of each drive before the log begins.
     before: Vec<f64>,
 }
 
@@ -138,6 +137,11 @@ impl<'a, R: Rows> Run<'a, R> {
         if memory.ended.is_some() {
             *stepper.memory() = memory.effects;
         }
+        let before = if memory.before.len() == plant.len() {
+            memory.before
+        } else {
+            plant.inputs_before(motion, &[])
+        };
         let mut sensors = memory.sensors;
         sensors.begin(plant, start);
         sensors.step(plant, stepper.state(), 0.0);
@@ -148,7 +152,7 @@ impl<'a, R: Rows> Run<'a, R> {
             sensors,
             inputs: vec![DriveInput::ZERO; plant.len()],
             cursors: vec![0; plant.len()],
-            before: vec![1.0; plant.len()],
+            before,
         }
     }
 
@@ -225,6 +229,7 @@ impl<'a, R: Rows> Run<'a, R> {
         PlantMemory {
             effects: std::mem::take(self.stepper.memory()),
             sensors: self.sensors,
+            before: self.before,
             ended: Some((k, state)),
             begins: Vec::new(),
         }
@@ -259,9 +264,9 @@ fn set_inputs(
                 input[sample]
             } else {
                 let span_s = span_s.start - plan.delay_s..span_s.end - plan.delay_s;
-                let before = share_before(&motion.time_s, &span_s) * (late.before[joint] - 1.0);
+                let before = share_before(&motion.time_s, &span_s);
                 let held = held_mean(&motion.time_s, input, span_s, &mut late.cursors[joint]);
-                held + before * input[0]
+                held + before * (late.before[joint] - input[0])
             };
         }
         let nominal = plan.drive.motor().and_then(|m| m.nominal_supply_v);

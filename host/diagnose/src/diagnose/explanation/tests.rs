@@ -64,6 +64,7 @@ fn verdict_of(
         seed: 0,
         ended: SearchEnded::Complete,
         left_out: Vec::new(),
+        shows_alone: Vec::new(),
     };
     evidence.verdict(&evidence.rivals())
 }

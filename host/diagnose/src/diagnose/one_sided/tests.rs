@@ -67,3 +67,31 @@ fn what_the_motions_held_out_do_not_show_is_not_proved() {
     );
     assert_eq!(unproved(&found(1.7e-3, 1.5e-3)), None);
 }
+
+#[test]
+fn what_shows_in_one_motion_alone_is_said_with_its_values_or_its_rivals() {
+    let limit = || vec![effect("torque_saturation", Some(1))];
+    let alone = |rivals| {
+        let mut diagnosis = said(Verdict::Ambiguous, limit(), rivals);
+        diagnosis.shows_alone = vec!["c.csv".into()];
+        crate::diagnose::words::complete(&mut diagnosis);
+        diagnosis
+    };
+    let one = alone(Vec::new());
+    assert_eq!(
+        one.summary[0],
+        "Shows in c.csv alone: torque saturation at joint 1 (torque_nm = 0.0500 N m); record \
+         another motion like it to prove it."
+    );
+    assert!(one.next[0].contains("--holdout NEW.csv"), "{:?}", one.next);
+    let several = alone(vec![vec![effect("coulomb", Some(1))]]);
+    let said = &several.summary[0];
+    assert!(
+        said.starts_with("Shows in c.csv alone: either torque saturation"),
+        "{said}"
+    );
+    assert!(
+        said.contains(", or Coulomb friction at joint 1 is missing; record"),
+        "{said}"
+    );
+}

@@ -6,7 +6,7 @@ use crate::diagnose::progress::Course;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, SearchEnded, Verdict, diagnose};
 use crate::fitting::{Halt, StopSwitch};
 use crate::model::Model;
-use crate::motion::Motion;
+use crate::motion::{Motion, Split};
 use std::sync::Mutex;
 
 /// An arm that lacks friction and a delay, which is left out of the library.
@@ -32,7 +32,9 @@ fn accepted_at(at_run: usize) -> (Diagnosis, Vec<crate::fitting::Progress>, usiz
     let told = Mutex::new(Vec::new());
     let heard = |progress| told.lock().unwrap().push(progress);
     let course = Course::halted_by(halt, &options, &heard);
-    let diagnosis = diagnose_on(&course, &model, motions, &options);
+    let [training, held_out] = motions;
+    let split = Split { training, held_out };
+    let (diagnosis, _) = diagnose_on(&course, &model, &split, true, &options);
     let runs = course.halt.runs();
     (diagnosis, told.into_inner().unwrap(), runs)
 }
@@ -136,7 +138,9 @@ fn an_abandoned_diagnosis_unwinds() {
     };
     options.stop.abandon();
     let course = Course::new(&options, &|_| ());
-    let diagnosed = || diagnose_on(&course, &model, motions, &options);
+    let [training, held_out] = motions;
+    let split = Split { training, held_out };
+    let diagnosed = || diagnose_on(&course, &model, &split, true, &options);
     let thrown = std::panic::catch_unwind(std::panic::AssertUnwindSafe(diagnosed)).unwrap_err();
     assert!(thrown.is::<crate::fitting::Abandoned>());
 }

@@ -93,7 +93,7 @@ pub(in crate::diagnose) fn fitted<const N: usize>(
 }
 
 /// All effects of the library but these.
-pub(super) fn all_but(kinds: &[&str]) -> Vec<String> {
+pub(in crate::diagnose) fn all_but(kinds: &[&str]) -> Vec<String> {
     let ids = crate::effects::EFFECTS.iter().map(|e| e.info().id);
     ids.filter(|id| !kinds.contains(id))
         .map(String::from)

@@ -17,6 +17,7 @@ const FOUND: Signs = Signs {
     placebo_ranks: false,
     rivals: false,
     is_examined: true,
+    is_provable: true,
 };
 /// The same with something left above the noise.
 const ABOVE: Signs = Signs {

@@ -66,6 +66,7 @@ pub(in crate::diagnose) fn said(
         windows: Vec::new(),
         search_ended: SearchEnded::Complete,
         left_out: Vec::new(),
+        shows_alone: Vec::new(),
     };
     complete(&mut diagnosis);
     diagnosis

@@ -18,6 +18,7 @@ fn called(name: &str) -> Vec<&'static str> {
 const TEXTBOOK: &[(&str, &[&str])] = &[
     ("delay", &["latency", "dead time", "lag", "time delay"]),
     ("slew_limit", &["slew rate", "rate limiter"]),
+    ("drive_lag", &["current loop", "activation filter"]),
     ("dead_zone", &["deadband", "dead-zone", "dead band"]),
     ("supply_sensitivity", &["battery voltage"]),
     ("supply_sag", &["voltage drop"]),
@@ -138,7 +139,7 @@ fn a_name_of_one_effect_means_it_and_a_word_of_several_lists_them() {
         ("play", &["gear_backlash", "backlash"]),
         ("damping", &["viscous", "air_drag"]),
         ("latency", &["delay", "time_offset"]),
-        ("lag", &["delay", "sensor_lag", "rate_lag"]),
+        ("lag", &["delay", "drive_lag", "sensor_lag", "rate_lag"]),
     ] {
         assert_eq!(called(name), meant, "{name}");
     }

@@ -51,6 +51,7 @@ impl<R: Rows> Run<'_, R> {
                 *memory = PlantMemory {
                     effects: self.stepper.memory().clone(),
                     sensors: self.sensors.clone(),
+                    before: self.before.clone(),
                     ended: Some((stretch.end - 1, state.clone())),
                     begins: Vec::new(),
                 };
