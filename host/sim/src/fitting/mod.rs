@@ -31,6 +31,7 @@ mod least_horizon;
 mod levenberg_marquardt;
 #[cfg(test)]
 mod log_tests;
+mod longer_windows;
 mod mixture;
 mod noise;
 mod normal;
@@ -78,6 +79,7 @@ pub use initial_guess::{
 };
 pub use jumping_law::{choose_by_other_motions, descend_jumping_law};
 pub use least_horizon::HorizonTooShort;
+pub use longer_windows::best_fit_in_longest_windows;
 pub use noise::{Noise, estimated_resolution, noise};
 pub use polish::polish;
 pub use profile::profile_intervals;
