@@ -81,14 +81,15 @@ pub trait Law: Sync + fmt::Debug {
     }
 
     /// Command, drive or joint, with memory: whether what it does depends on what was before. It
-    /// then has a [`MemoryCell`] at each joint, which comes with the state of the hook of its site.
+    /// then has a [`MemoryCell`] at each joint, which comes with the state of the hook of its site;
+    /// a type of its own says what is in it.
     fn remembers(&self) -> bool {
         false
     }
 
     /// What it remembers where a motion begins in this state and nothing earlier is known.
     fn recall(&self, _values: &[f64], _at: &StepState) -> MemoryCell {
-        [0.0; 2]
+        MemoryCell::EMPTY
     }
 
     /// With memory: how far it may displace something that no reading tells of where a window
@@ -97,10 +98,15 @@ pub trait Law: Sync + fmt::Debug {
         None
     }
 
-    /// Command, drive or joint, with a hidden displacement: what it remembers where that is so much
-    /// in this state.
-    fn displaced(&self, _values: &[f64], displacement: f64, _at: &StepState) -> MemoryCell {
-        [displacement, 0.0]
+    /// Drive or joint, with a hidden displacement: what it remembers where that is so much in this
+    /// state. Command: the same where so much has been obeyed for long.
+    fn displaced(&self, values: &[f64], _displacement: f64, at: &StepState) -> MemoryCell {
+        self.recall(values, at)
+    }
+
+    /// The hidden displacement that it remembers.
+    fn displacement(&self, _memory: MemoryCell) -> f64 {
+        0.0
     }
 
     /// What it remembers after a step of `step_s` that ended in this state.

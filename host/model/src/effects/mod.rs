@@ -30,6 +30,7 @@ mod info;
 mod load_friction;
 mod look_up;
 mod mass;
+mod memory;
 mod placebo;
 mod position_friction;
 mod pre_sliding;
@@ -62,12 +63,10 @@ pub use effect::{Effect, Law, SMOOTH_DIFFERENCE};
 pub use gear::{Coupling, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, OnSlide, Parameter, Scope, Site, ValueBehind};
 pub use look_up::{NameMatch, listed, look_up};
+pub use memory::{BodyState, MemoryCell, SenseMemory};
 pub use placebo::PLACEBO;
 pub use probe::ProbeVariable;
-pub use state::{
-    AtRest, DriveState, Encoded, FrictionState, JointState, MemoryCell, Rig, SenseMemory, Slope,
-    StepState,
-};
+pub use state::{AtRest, DriveState, Encoded, FrictionState, JointState, Rig, Slope, StepState};
 pub use torque_scale::TORQUE_SCALE;
 pub use unit_suffix::split_unit;
 

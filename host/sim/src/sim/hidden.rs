@@ -126,6 +126,13 @@ impl Plant {
         &self.hidden
     }
 
+    /// The effect at a joint that remembers in this cell.
+    fn remembering(&self, joint: usize, cell: usize) -> Option<&ActiveEffect> {
+        let mut remembering = self.joints[joint].remembering();
+        let own = remembering.find(|(_, own)| *own == cell);
+        own.map(|(e, _)| e)
+    }
+
     fn sensor(&self, cell: usize) -> Option<&ActiveEffect> {
         self.joints.iter().flat_map(|plan| &plan.sense).nth(cell)
     }
@@ -149,7 +156,12 @@ impl PlantMemory {
                         .zip(plant.sensor(cell))
                         .map(|(m, e)| e.effect.slipped(m))
                 }
-                HiddenMemory::Effect(cell) => self.effects.0.get(cell).copied(),
+                HiddenMemory::Effect(cell) => {
+                    let memory = self.effects.0.get(cell).copied();
+                    memory
+                        .zip(plant.remembering(unknown.joint, cell))
+                        .map(|(m, e)| [e.effect.displacement(m), 0.0])
+                }
                 HiddenMemory::Input => None,
             };
             at.map(|at| unknown.of(at))
@@ -207,8 +219,7 @@ impl EffectMemory {
         for (unknown, value) in plant.hidden.iter().zip(values) {
             if let HiddenMemory::Effect(cell) = unknown.place {
                 let joint = unknown.joint;
-                let mut remembering = plant.joints[joint].remembering();
-                if let Some((e, _)) = remembering.find(|(_, own)| *own == cell) {
+                if let Some(e) = plant.remembering(joint, cell) {
                     let mut at = [0.0; 2];
                     unknown.put(&mut at, *value);
                     let state = StepState::at_rest(angle[joint] - plant.zeros_rad[joint]);
