@@ -3,7 +3,7 @@
 use super::error::DesignError;
 use super::omitted::OmittedEffect;
 use crate::effects::{
-    AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, Site, Slope, StepState,
+    AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, MemoryCell, Site, Slope, StepState,
 };
 use crate::model::{Drive, EffectInstance, Model};
 
@@ -190,7 +190,7 @@ impl<'a> JointAt<'a> {
             duty: at.duty,
             full_torque_nm: at.full_torque_nm,
             supply_ratio: 1.0,
-            memory: [0.0; 2],
+            memory: MemoryCell::EMPTY,
         };
         at.torque_nm = at.full_torque_nm * at.duty;
         let no_load = self.drive.motor().map(|m| m.no_load_speed_rad_s);

@@ -63,8 +63,8 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 };
 
 impl Law for Backlash {
-    fn slipped(&self, [encoded_rad, reading_rad, draws_away_rad_s, _]: SenseMemory) -> [f64; 2] {
-        [encoded_rad - reading_rad, draws_away_rad_s]
+    fn slipped(&self, memory: SenseMemory) -> [f64; 2] {
+        memory.ahead_rad()
     }
 
     fn start_unknown(&self, values: &[f64]) -> Option<StartUnknown> {
@@ -76,7 +76,10 @@ impl Law for Backlash {
     fn slip(&self, values: &[f64], [ahead_rad, draws_away_rad_s]: [f64; 2]) -> SenseMemory {
         let play = Play::at(values[0], ahead_rad);
         let draws_away_rad_s = play.free_rad_s(draws_away_rad_s);
-        [0.0, -play.ahead_rad, draws_away_rad_s, 0.0]
+        SenseMemory {
+            draws_away_rad_s,
+            ..SenseMemory::reads(-play.ahead_rad, 0.0)
+        }
     }
 
     fn sense(
@@ -87,14 +90,21 @@ impl Law for Backlash {
         step_s: f64,
     ) -> f64 {
         let angle_rad = encoded.angle_rad;
-        let [before_rad, read_rad, ..] = memory.unwrap_or([angle_rad, angle_rad, 0.0, 0.0]);
+        let before = memory.unwrap_or(SenseMemory::reads(angle_rad, angle_rad));
         // Between two stretches of a motion no time passes: the reading is put where the next one
         // begins, and the joint is as far ahead of it as it was.
-        let reached_rad = if step_s > 0.0 { angle_rad } else { before_rad };
-        let play = Play::at(values[0], reached_rad - read_rad);
+        let reached_rad = if step_s > 0.0 {
+            angle_rad
+        } else {
+            before.encoded
+        };
+        let play = Play::at(values[0], reached_rad - before.reading);
         let reading_rad = angle_rad - play.ahead_rad;
         let draws_away_rad_s = play.free_rad_s(encoded.speed_rad_s);
-        *memory = Some([angle_rad, reading_rad, draws_away_rad_s, 0.0]);
+        *memory = Some(SenseMemory {
+            draws_away_rad_s,
+            ..SenseMemory::reads(reading_rad, angle_rad)
+        });
         reading_rad
     }
 }

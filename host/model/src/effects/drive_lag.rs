@@ -1,5 +1,6 @@
 //! Lag of the drive: a filter lies between the input that arrives and the one that is obeyed.
 
+use super::memory::Obeyed;
 use super::{
     EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, StartUnknown, StepState,
 };
@@ -61,21 +62,26 @@ impl Law for DriveLag {
 
     /// Not a number: the first input had long been there.
     fn recall(&self, _values: &[f64], _at: &StepState) -> MemoryCell {
-        [f64::NAN, 0.0]
+        Obeyed { input: f64::NAN }.into()
+    }
+
+    fn recall_unknown(&self, _values: &[f64], input: f64, _at: &StepState) -> MemoryCell {
+        Obeyed { input }.into()
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
-        let way = at.input - memory[0];
-        memory[0] = if at.energised && values[0] > 0.0 && !way.is_nan() {
+        let way = at.input - Obeyed::from(*memory).input;
+        let input = if at.energised && values[0] > 0.0 && !way.is_nan() {
             at.input - way * (-step_s / values[0]).exp()
         } else {
             at.input
         };
+        *memory = Obeyed { input }.into();
     }
 
     /// The mean over the step.
     fn obey(&self, values: &[f64], memory: MemoryCell, input: f64, step_s: f64) -> f64 {
-        let way = input - memory[0];
+        let way = input - Obeyed::from(memory).input;
         if way.is_nan() || values[0] <= 0.0 || step_s <= 0.0 {
             return input;
         }

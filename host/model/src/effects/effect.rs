@@ -81,14 +81,15 @@ pub trait Law: Sync + fmt::Debug {
     }
 
     /// Command, drive or joint, with memory: whether what it does depends on what was before. It
-    /// then has a [`MemoryCell`] at each joint, which comes with the state of the hook of its site.
+    /// then has a [`MemoryCell`] at each joint, which comes with the state of the hook of its site;
+    /// a type of its own says what is in it.
     fn remembers(&self) -> bool {
         false
     }
 
     /// What it remembers where a motion begins in this state and nothing earlier is known.
     fn recall(&self, _values: &[f64], _at: &StepState) -> MemoryCell {
-        [0.0; 2]
+        MemoryCell::EMPTY
     }
 
     /// What of the time before a simulation neither its start state nor any reading tells, and a
@@ -99,8 +100,13 @@ pub trait Law: Sync + fmt::Debug {
 
     /// Command, drive or joint, with memory: what it remembers where its unknown is so much in this
     /// state.
-    fn recall_unknown(&self, _values: &[f64], unknown: f64, _at: &StepState) -> MemoryCell {
-        [unknown, 0.0]
+    fn recall_unknown(&self, values: &[f64], _unknown: f64, at: &StepState) -> MemoryCell {
+        self.recall(values, at)
+    }
+
+    /// The unknown displacement that it remembers.
+    fn displacement(&self, _memory: MemoryCell) -> f64 {
+        0.0
     }
 
     /// What it remembers after a step of `step_s` that ended in this state.

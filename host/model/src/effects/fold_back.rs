@@ -1,5 +1,6 @@
 //! Protective fold-back: a servo that has pushed hard for too long gives less.
 
+use super::memory::remembered;
 use super::{
     AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
     StartUnknown, StepState,
@@ -51,6 +52,17 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     reference: "ROBOTIS AX-12 manual, alarm shutdown by overload; its torque limit falls",
 };
 
+/// How long the drive has been overloaded, less how long it has rested since, and in which share of
+/// the step to come it is folded back.
+struct Overload {
+    overload_s: f64,
+    folded_share: f64,
+}
+remembered!(Overload {
+    overload_s,
+    folded_share
+});
+
 impl Law for FoldBack {
     fn difference(&self) -> f64 {
         2e-2
@@ -68,7 +80,11 @@ impl Law for FoldBack {
     }
 
     fn recall_unknown(&self, values: &[f64], unknown: f64, _at: &StepState) -> MemoryCell {
-        [unknown, f64::from(unknown >= values[2])]
+        Overload {
+            overload_s: unknown,
+            folded_share: f64::from(unknown >= values[2]),
+        }
+        .into()
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
@@ -79,12 +95,18 @@ impl Law for FoldBack {
             -step_s
         };
         let passed = |from_s: f64| (from_s + way_s).max(0.0).min(2.0 * after_s);
-        let now_s = passed(memory[0]);
-        *memory = [now_s, share_above(after_s, now_s, passed(now_s))];
+        let overload_s = passed(Overload::from(*memory).overload_s);
+        let folded_share = share_above(after_s, overload_s, passed(overload_s));
+        *memory = Overload {
+            overload_s,
+            folded_share,
+        }
+        .into();
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
-        torque_nm * (1.0 - (1.0 - values[0]) * at.memory[1])
+        let folded_share = Overload::from(at.memory).folded_share;
+        torque_nm * (1.0 - (1.0 - values[0]) * folded_share)
     }
 
     /// Rested.

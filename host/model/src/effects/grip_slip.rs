@@ -61,8 +61,8 @@ impl Law for GripSlip {
         5e-3
     }
 
-    fn slipped(&self, [encoded_rad, reading_rad, _, slip_rad_s]: SenseMemory) -> [f64; 2] {
-        [encoded_rad - reading_rad, slip_rad_s]
+    fn slipped(&self, memory: SenseMemory) -> [f64; 2] {
+        memory.ahead_rad()
     }
 
     /// A motion begins with its zero where the log has it, and held.
@@ -82,25 +82,28 @@ impl Law for GripSlip {
             speed_rad_s,
             ..
         } = encoded;
-        let unslipped = [angle_rad, angle_rad, f64::NAN, 0.0];
-        let [before_rad, reading_rad, shaft_rad_s, slip_rad_s] = memory.unwrap_or(unslipped);
+        let before = memory.unwrap_or(SenseMemory::reads(angle_rad, angle_rad));
+        let [ahead_rad, speed_ahead_rad_s] = before.ahead_rad();
         let mut slip = Slip {
-            ahead_rad: before_rad - reading_rad,
-            speed_rad_s: slip_rad_s,
+            ahead_rad,
+            speed_rad_s: speed_ahead_rad_s,
         };
         // Between two stretches of a motion no time passes, and the shaft slips on as it did.
         if step_s > 0.0 {
-            let mean_rad_s = (angle_rad - before_rad) / step_s;
+            let mean_rad_s = (angle_rad - before.encoded) / step_s;
             let began_rad_s = 2.0 * mean_rad_s - speed_rad_s;
-            if shaft_rad_s.is_finite() {
+            if let Some(shaft_rad_s) = before.shaft_rad_s.filter(|speed| speed.is_finite()) {
                 slip.speed_rad_s = began_rad_s - shaft_rad_s;
             }
             let gained_rad_s2 = (speed_rad_s - began_rad_s) / step_s;
             slip.go_on(gained_rad_s2, values[0], step_s);
         }
         let reading_rad = angle_rad - slip.ahead_rad;
-        let shaft_rad_s = speed_rad_s - slip.speed_rad_s;
-        *memory = Some([angle_rad, reading_rad, shaft_rad_s, slip.speed_rad_s]);
+        *memory = Some(SenseMemory {
+            draws_away_rad_s: slip.speed_rad_s,
+            shaft_rad_s: Some(speed_rad_s - slip.speed_rad_s),
+            ..SenseMemory::reads(reading_rad, angle_rad)
+        });
         reading_rad
     }
 }

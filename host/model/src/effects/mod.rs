@@ -31,6 +31,7 @@ mod info;
 mod load_friction;
 mod look_up;
 mod mass;
+mod memory;
 mod placebo;
 mod position_friction;
 mod pre_sliding;
@@ -63,11 +64,11 @@ pub use effect::{Effect, Law, SMOOTH_DIFFERENCE};
 pub use gear::{Coupling, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, OnSlide, Parameter, Scope, Site, ValueBehind};
 pub use look_up::{NameMatch, listed, look_up};
+pub use memory::{BodyState, MemoryCell, SenseMemory};
 pub use placebo::PLACEBO;
 pub use probe::ProbeVariable;
 pub use state::{
-    AtRest, DriveState, Encoded, FrictionState, JointState, MemoryCell, Rig, SenseMemory, Slope,
-    StartUnknown, StepState,
+    AtRest, DriveState, Encoded, FrictionState, JointState, Rig, Slope, StartUnknown, StepState,
 };
 pub use torque_scale::TORQUE_SCALE;
 pub use unit_suffix::split_unit;

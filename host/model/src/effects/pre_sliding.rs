@@ -1,5 +1,6 @@
 //! Pre-sliding: before dry friction breaks away, it is a spring.
 
+use super::memory::remembered;
 use super::{
     AtRest, EffectInfo, JointState, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
     StartUnknown, StepState,
@@ -75,6 +76,16 @@ static ON_SLIDE: EffectInfo = EffectInfo {
 /// Speed, rad/s (m/s), well above which a joint that begins in motion is taken to slide.
 const SLIDES_AT: f64 = 0.05;
 
+/// How far the contact is bent, and at which angle of the joint.
+struct Bent {
+    deflection_rad: f64,
+    angle_rad: f64,
+}
+remembered!(Bent {
+    deflection_rad,
+    angle_rad
+});
+
 impl Law for PreSliding {
     fn difference(&self) -> f64 {
         5e-3
@@ -86,10 +97,11 @@ impl Law for PreSliding {
 
     fn recall(&self, values: &[f64], at: &StepState) -> MemoryCell {
         let speed = at.speed_rad_s;
-        [
-            slid(values) * speed / (speed.abs() + SLIDES_AT),
-            at.angle_rad,
-        ]
+        Bent {
+            deflection_rad: slid(values) * speed / (speed.abs() + SLIDES_AT),
+            angle_rad: at.angle_rad,
+        }
+        .into()
     }
 
     fn start_unknown(&self, values: &[f64]) -> Option<StartUnknown> {
@@ -97,15 +109,28 @@ impl Law for PreSliding {
     }
 
     fn recall_unknown(&self, _values: &[f64], unknown: f64, at: &StepState) -> MemoryCell {
-        [unknown, at.angle_rad]
+        Bent {
+            deflection_rad: unknown,
+            angle_rad: at.angle_rad,
+        }
+        .into()
+    }
+
+    fn displacement(&self, memory: MemoryCell) -> f64 {
+        Bent::from(memory).deflection_rad
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, _step_s: f64) {
-        *memory = [deflection(values, *memory, at.angle_rad), at.angle_rad];
+        let angle_rad = at.angle_rad;
+        *memory = Bent {
+            deflection_rad: deflection(values, (*memory).into(), angle_rad),
+            angle_rad,
+        }
+        .into();
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
-        -values[1] * deflection(values, at.memory, at.angle_rad)
+        -values[1] * deflection(values, at.memory.into(), at.angle_rad)
     }
 
     /// None: what is a spring within a degree holds nothing beyond.
@@ -120,11 +145,11 @@ fn slid(values: &[f64]) -> f64 {
 }
 
 /// Deflection at an angle, reached without a turn from what is remembered.
-fn deflection(values: &[f64], [before, from_rad]: MemoryCell, angle_rad: f64) -> f64 {
-    let (most, way_rad) = (slid(values), angle_rad - from_rad);
+fn deflection(values: &[f64], before: Bent, angle_rad: f64) -> f64 {
+    let (most, way_rad) = (slid(values), angle_rad - before.angle_rad);
     if most <= 0.0 {
         return 0.0;
     }
     let end = most * way_rad.signum();
-    end + (before - end) * (-way_rad.abs() / most).exp()
+    end + (before.deflection_rad - end) * (-way_rad.abs() / most).exp()
 }

@@ -222,8 +222,8 @@ impl Law for Probe {
         step_s: f64,
     ) -> f64 {
         let angle_rad = encoded.angle_rad;
-        let before = memory.map_or(angle_rad, |m| m[0]);
-        *memory = Some([angle_rad, 0.0, 0.0, 0.0]);
+        let before = memory.map_or(angle_rad, |m| m.encoded);
+        *memory = Some(SenseMemory::reads(angle_rad, angle_rad));
         let moved = angle_rad - before;
         if moved == 0.0 || step_s == 0.0 {
             return angle_rad;

@@ -81,14 +81,15 @@ pub(super) fn filtered(
 ) -> f64 {
     let to = encoded.angle_rad;
     let reading = match *memory {
-        Some([from, reading, ..]) if constant_s > 0.0 && step_s > 0.0 => {
+        Some(before) if constant_s > 0.0 && step_s > 0.0 => {
+            let from = before.encoded;
             let mean = encoded.mean.unwrap_or(0.5 * (from + to));
-            follow(reading, [from, to, mean], step_s, constant_s)
+            follow(before.reading, [from, to, mean], step_s, constant_s)
         }
-        Some([_, reading, ..]) if constant_s > 0.0 => reading,
+        Some(before) if constant_s > 0.0 => before.reading,
         _ => to,
     };
-    *memory = Some([to, reading, 0.0, 0.0]);
+    *memory = Some(SenseMemory::reads(reading, to));
     reading
 }
 

@@ -5,7 +5,9 @@ mod remembered;
 #[cfg(test)]
 mod tests;
 
-use super::{DriveState, Effect, Encoded, FrictionState, JointState, Needs, Parameter, Site};
+use super::{
+    DriveState, Effect, Encoded, FrictionState, JointState, MemoryCell, Needs, Parameter, Site,
+};
 use bodies::{arm, gives_way_m, gravity_nm, inertia_nm, wound_nm};
 use std::ops::Range;
 
@@ -217,7 +219,7 @@ fn drive(effect: Effect, values: &[f64], duty: f64, speed: f64, supply: f64) -> 
         duty,
         full_torque_nm: FULL_TORQUE_NM,
         supply_ratio: supply,
-        memory: [0.0; 2],
+        memory: MemoryCell::EMPTY,
     };
     effect.drive(values, FULL_TORQUE_NM * duty, &at)
 }

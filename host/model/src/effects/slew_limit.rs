@@ -1,5 +1,6 @@
 //! Slew limit: a servo's profile, or a driver's ramp, lets its input change no faster than so much.
 
+use super::memory::Obeyed;
 use super::{
     AtRest, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
     StartUnknown, StepState,
@@ -56,25 +57,32 @@ impl Law for SlewLimit {
 
     /// Not a number: the first input is obeyed at once.
     fn recall(&self, _values: &[f64], _at: &StepState) -> MemoryCell {
-        [f64::NAN, 0.0]
+        Obeyed { input: f64::NAN }.into()
+    }
+
+    fn recall_unknown(&self, _values: &[f64], input: f64, _at: &StepState) -> MemoryCell {
+        Obeyed { input }.into()
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
-        memory[0] = if at.energised {
-            reached(values[0], memory[0], at.input, step_s)
+        let before = Obeyed::from(*memory).input;
+        let input = if at.energised {
+            reached(values[0], before, at.input, step_s)
         } else {
             at.input
         };
+        *memory = Obeyed { input }.into();
     }
 
     /// The mean over the step of a ramp that may end within it.
     fn obey(&self, values: &[f64], memory: MemoryCell, input: f64, step_s: f64) -> f64 {
-        let (rate, way) = (values[0], input - memory[0]);
+        let before = Obeyed::from(memory).input;
+        let (rate, way) = (values[0], input - before);
         if way.is_nan() || !rate.is_finite() || step_s <= 0.0 {
             return input;
         }
         if way.abs() > rate * step_s {
-            memory[0] + 0.5 * rate * step_s * way.signum()
+            before + 0.5 * rate * step_s * way.signum()
         } else {
             input - 0.5 * way * way.abs() / (rate * step_s)
         }

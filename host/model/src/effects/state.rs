@@ -1,6 +1,6 @@
 //! What an effect sees, and what it may change.
 
-use super::BaseSpring;
+use super::{BaseSpring, MemoryCell};
 use crate::dynamics::{Chain, SpatialTree};
 
 /// A joint at rest, about which an effect's law is linearised.
@@ -120,14 +120,10 @@ impl JointState {
             speed_rad_s,
             drive_nm: 0.0,
             shuffled_rad_s: 0.0,
-            memory: [0.0; 2],
+            memory: MemoryCell::EMPTY,
         }
     }
 }
-
-/// What an effect carries from one step of a simulation to the next; each says what its two numbers
-/// are.
-pub type MemoryCell = [f64; 2];
 
 /// The shaft of an encoder at an instant, zero and scale of the encoder included; or, of a sensor
 /// of rates, the rate.
@@ -151,10 +147,6 @@ impl Encoded {
         }
     }
 }
-
-/// What a sensor carries from one reading to the next: the encoded angle and the reading, rad, and
-/// two numbers of its own.
-pub type SenseMemory = [f64; 4];
 
 /// A joint and its drive at the end of a step, for an effect to remember.
 #[derive(Debug, Clone, Copy)]

@@ -1,5 +1,6 @@
 //! Thermal drift: the winding warms up under load, its resistance rises, and the torque falls.
 
+use super::memory::remembered;
 use super::{
     AtRest, DriveState, EffectInfo, Law, MemoryCell, Needs, OnSlide, Parameter, Scope, Site, Slope,
     StartUnknown, StepState,
@@ -55,6 +56,12 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     reference: "Mellor, Roberts, Turner, IEE Proceedings B 138 (1991) 205, with one body",
 };
 
+/// How warm the motor is: the mean square of the duty, the latest counting most.
+struct Warmth {
+    mean_square: f64,
+}
+remembered!(Warmth { mean_square });
+
 impl Law for ThermalDrift {
     fn remembers(&self) -> bool {
         true
@@ -65,13 +72,22 @@ impl Law for ThermalDrift {
         Some(StartUnknown::Amount { most: 1.0 })
     }
 
+    fn recall_unknown(&self, _values: &[f64], unknown: f64, _at: &StepState) -> MemoryCell {
+        Warmth {
+            mean_square: unknown,
+        }
+        .into()
+    }
+
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {
         let share = 1.0 - (-step_s / values[1]).exp();
-        memory[0] += share * (at.duty.powi(2) - memory[0]);
+        let Warmth { mean_square } = Warmth::from(*memory);
+        let mean_square = mean_square + share * (at.duty.powi(2) - mean_square);
+        *memory = Warmth { mean_square }.into();
     }
 
     fn drive(&self, values: &[f64], torque_nm: f64, at: &DriveState) -> f64 {
-        torque_nm / (1.0 + values[0] * at.memory[0])
+        torque_nm / (1.0 + values[0] * Warmth::from(at.memory).mean_square)
     }
 
     /// Cold.

@@ -114,6 +114,30 @@ impl FitProblem {
         }
     }
 
+    /// The same motions and weights in the longest windows, up to the horizon, in which start errors
+    /// stay small for this model, too; none where more than half as many are left.
+    pub(super) fn lengthened(&self, model: &Model, horizon: Horizon) -> Option<FitProblem> {
+        if self
+            .stable
+            .iter()
+            .all(|own| own.shorter(horizon) == horizon)
+        {
+            return None;
+        }
+        let motions = self.motions.par_iter().zip(&self.assumed).zip(&self.stable);
+        let stable: Vec<Horizon> = motions
+            .map(|((motion, assumed), own)| {
+                own.longer(stable_horizon(model, &self.sigma, assumed, motion))
+            })
+            .collect();
+        let longer = FitProblem {
+            windows: cut(&self.motions, &stable, &self.sigma, horizon),
+            stable,
+            ..self.clone()
+        };
+        (2 * longer.windows.len() <= self.windows.len()).then_some(longer)
+    }
+
     /// The same motions and weights cut at another horizon.
     pub fn recut(&self, horizon: Horizon) -> FitProblem {
         FitProblem {

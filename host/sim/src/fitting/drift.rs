@@ -4,9 +4,10 @@
 use super::data::FitProblem;
 use super::fitted_value::FittedValue;
 use super::horizon::Horizon;
+use super::longer_windows::best_fit_in_longest_windows;
 use super::refit::{Undetermined, told_apart};
 use super::told_values::{ToldValues, told_values};
-use super::ways::{best_fit, stated};
+use super::ways::stated;
 use crate::model::{Model, ParameterPath};
 use crate::motion::Motion;
 use rayon::prelude::*;
@@ -82,7 +83,7 @@ pub fn drift(
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let fitted = sessions.par_iter().map(|session| {
         let data = FitProblem::new(model, session.motions.clone(), horizon);
-        let found = best_fit(model, free, &data);
+        let (found, data) = best_fit_in_longest_windows(model, free, data, horizon);
         told_apart(&found)?;
         told_values(stated(found, &data), &data)
     });

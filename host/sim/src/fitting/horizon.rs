@@ -26,6 +26,12 @@ impl Horizon {
         seconds.map_or(Horizon::Whole, Horizon::Seconds)
     }
 
+    /// The longer of two.
+    pub(super) fn longer(self, other: Horizon) -> Self {
+        let seconds = self.seconds().zip(other.seconds());
+        Horizon::from_seconds(seconds.map(|(own, others)| own.max(others)))
+    }
+
     /// The shorter of two.
     pub fn shorter(self, other: Horizon) -> Self {
         let seconds = [self, other].into_iter().filter_map(Horizon::seconds);

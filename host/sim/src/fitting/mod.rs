@@ -32,6 +32,7 @@ mod least_horizon;
 mod levenberg_marquardt;
 #[cfg(test)]
 mod log_tests;
+mod longer_windows;
 mod mixture;
 mod motion_start;
 mod noise;
@@ -79,6 +80,7 @@ pub use initial_guess::{
 };
 pub use jumping_law::{choose_by_other_motions, descend_jumping_law};
 pub use least_horizon::HorizonTooShort;
+pub use longer_windows::best_fit_in_longest_windows;
 pub use noise::{Noise, estimated_resolution, noise};
 pub use polish::polish;
 pub use profile::profile_intervals;

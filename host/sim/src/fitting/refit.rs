@@ -11,6 +11,7 @@ use super::fit::{Fit, FitOptions};
 use super::fitted_value::FittedValue;
 use super::horizon::Horizon;
 use super::jumping_law::choose_by_other_motions;
+use super::longer_windows::best_fit_in_longest_windows;
 use super::mixture::untold_mixture;
 use super::polish::polish;
 use super::progress::{Progress, RefitSteps};
@@ -131,7 +132,7 @@ pub fn refit(
     progress(steps.fitting());
     let horizon = horizon.unwrap_or(Horizon::Whole);
     let data = FitProblem::new(model, split.training.clone(), horizon);
-    let found = best_fit(model, free, &data);
+    let (found, data) = best_fit_in_longest_windows(model, free, data, horizon);
     told_apart(&found)?;
     progress(steps.settling());
     let refit = Refit {

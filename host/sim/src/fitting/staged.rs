@@ -13,7 +13,7 @@ use super::window_start::WindowStart;
 use crate::model::{Model, ParameterPath};
 
 /// Seconds of one window, stage by stage, over which most valleys are true.
-const SHORT_S: &[f64] = &[0.25, 0.5, 1.0];
+pub(super) const SHORT_S: &[f64] = &[0.25, 0.5, 1.0];
 /// Those between them and whole motions.
 pub(super) const LONGER_S: &[f64] = &[2.0, 4.0, 8.0];
 

@@ -52,8 +52,7 @@ pub(super) fn lowest(ways: impl IntoIterator<Item = End>) -> Option<Fit> {
         if best.is_none() || cost < least {
             best = Some(fit);
         }
-        let left = least.min(cost) / best.as_ref().map_or(1, |b| b.residuals.count()).max(1) as f64;
-        if left.sqrt() < NEAR_NOISE && is_confirmed(&ends) {
+        if best.as_ref().is_some_and(leaves_noise) && is_confirmed(&ends) {
             break;
         }
     }
@@ -61,6 +60,12 @@ pub(super) fn lowest(ways: impl IntoIterator<Item = End>) -> Option<Fit> {
         simulations,
         ..best
     })
+}
+
+/// Whether a fit leaves little more than noise.
+pub(super) fn leaves_noise(fit: &Fit) -> bool {
+    let samples = fit.residuals.count().max(1) as f64;
+    (fit.residuals.cost() / samples).sqrt() < NEAR_NOISE
 }
 
 /// Whether two routes ended in the lowest valley.

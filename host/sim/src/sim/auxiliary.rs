@@ -4,10 +4,7 @@
 
 use super::memory::EffectMemory;
 use super::plant::Plant;
-use crate::effects::MemoryCell;
-
-/// A body of which nothing earlier is known.
-pub(super) const UNKNOWN: MemoryCell = [f64::NAN; 2];
+use crate::effects::BodyState;
 
 /// Share of a motor's torque below which friction may leave it anywhere between the flanks.
 const LIGHT_SHARE: f64 = 0.01;
@@ -67,26 +64,29 @@ impl Auxiliary {
             let (Some(coupling), Some(cell)) = (plan.coupling, plan.gear_cell) else {
                 continue;
             };
-            let [wound, winding] = match memory.0[cell] {
-                [wound, _] if wound.is_nan() => {
-                    let light_nm = LIGHT_SHARE * plan.full_torque_nm;
-                    [coupling.wound_rad(holding_nm(joint), light_nm), 0.0]
-                }
-                remembered => remembered,
-            };
-            self.place[joint] = angle[joint] + wound;
-            self.speed[joint] = speed[joint] + winding;
+            let mut wound = BodyState::from(memory.0[cell]);
+            if !wound.is_known() {
+                let light_nm = LIGHT_SHARE * plan.full_torque_nm;
+                wound = BodyState {
+                    place: coupling.wound_rad(holding_nm(joint), light_nm),
+                    speed: 0.0,
+                };
+            }
+            self.place[joint] = angle[joint] + wound.place;
+            self.speed[joint] = speed[joint] + wound.speed;
         }
         if let Some((base, cell)) = plant.base {
             let mass_kg = plant.rig.chain.links.iter().map(|l| l.mass_kg).sum::<f64>();
             for k in 0..2 {
-                let rests_m = -mass_kg * plant.base_m_s2[k] / base.stiffness_n_m;
-                let at = match memory.0[cell + k] {
-                    [place, _] if place.is_nan() => [rests_m, 0.0],
-                    remembered => remembered,
-                };
+                let mut at = BodyState::from(memory.0[cell + k]);
+                if !at.is_known() {
+                    at = BodyState {
+                        place: -mass_kg * plant.base_m_s2[k] / base.stiffness_n_m,
+                        speed: 0.0,
+                    };
+                }
                 let body = plant.len() + k;
-                [self.place[body], self.speed[body]] = at;
+                (self.place[body], self.speed[body]) = (at.place, at.speed);
             }
         }
     }
@@ -101,14 +101,21 @@ impl Auxiliary {
     ) {
         for (joint, plan) in plant.joints.iter().enumerate() {
             if let Some(cell) = plan.gear_cell {
-                let wound = self.place[joint] - angle[joint];
-                memory.0[cell] = [wound, self.speed[joint] - speed[joint]];
+                let wound = BodyState {
+                    place: self.place[joint] - angle[joint],
+                    speed: self.speed[joint] - speed[joint],
+                };
+                memory.0[cell] = wound.into();
             }
         }
         if let Some((_, cell)) = plant.base {
             for k in 0..2 {
                 let body = plant.len() + k;
-                memory.0[cell + k] = [self.place[body], self.speed[body]];
+                let at = BodyState {
+                    place: self.place[body],
+                    speed: self.speed[body],
+                };
+                memory.0[cell + k] = at.into();
             }
         }
     }

@@ -74,7 +74,7 @@ impl JointPlan {
             duty,
             full_torque_nm: self.full_torque_nm,
             supply_ratio: at.supply_ratio,
-            memory: [0.0; 2],
+            memory: MemoryCell::EMPTY,
         };
         let torque = self.full_torque_nm * (duty - slope * speed_rad_s);
         self.output.iter().fold(torque, |torque, e| {

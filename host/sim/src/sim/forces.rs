@@ -7,7 +7,7 @@ use super::plant::Plant;
 use super::rows::Rows;
 use super::stepper::Contact;
 use crate::dynamics::{FreeBase, SpatialWorkspace, Workspace};
-use crate::effects::{BaseSpring, FrictionState, JointState};
+use crate::effects::{BaseSpring, BodyState, FrictionState, JointState, MemoryCell};
 use crate::model::Drive;
 
 /// A state: relative angles, rad, and speeds, rad/s, and how friction acts on each joint.
@@ -150,7 +150,7 @@ impl<R: Rows> Forces<R> {
                 speed_rad_s: speed,
                 drive_nm: drive,
                 shuffled_rad_s: input.shuffled_rad_s,
-                memory: [0.0; 2],
+                memory: MemoryCell::EMPTY,
             };
             self.drive_torque[joint] = drive;
             self.torque[joint] = plan
@@ -256,7 +256,7 @@ impl<R: Rows> Forces<R> {
         (angle, speed): (&[f64], &[f64]),
     ) {
         let mut cells = plant.joints.iter().filter_map(|plan| plan.gear_cell);
-        if cells.any(|cell| self.memory.0[cell][0].is_nan()) {
+        if cells.any(|cell| !BodyState::from(self.memory.0[cell]).is_known()) {
             let contact = &[];
             let at = StateView {
                 angle,

@@ -13,7 +13,7 @@ use super::joint_plan::{ActiveEffect, JointPlan};
 use super::memory::{EffectMemory, PlantMemory};
 use super::plant::Plant;
 use super::sensor_state::SensorState;
-use crate::effects::{BaseSpring, StartUnknown, StepState};
+use crate::effects::{BaseSpring, BodyState, StartUnknown, StepState};
 use crate::model::Drive;
 use crate::motion::Motion;
 
@@ -64,15 +64,20 @@ pub enum HiddenQuantity {
 }
 
 impl HiddenQuantity {
+    /// Whether it is of a body beside the links.
+    fn is_of_body(self) -> bool {
+        matches!(
+            self,
+            HiddenQuantity::Place { .. } | HiddenQuantity::Speed { .. }
+        )
+    }
+
     /// Whether it is of the beginning of a motion, not of every stretch.
     pub fn is_of_motion(self) -> bool {
         matches!(
             self,
-            HiddenQuantity::Before { .. }
-                | HiddenQuantity::Amount { .. }
-                | HiddenQuantity::Place { .. }
-                | HiddenQuantity::Speed { .. }
-        )
+            HiddenQuantity::Before { .. } | HiddenQuantity::Amount { .. }
+        ) || self.is_of_body()
     }
 }
 
@@ -241,6 +246,13 @@ impl Plant {
         &self.hidden
     }
 
+    /// The effect at a joint that remembers in this cell.
+    fn remembering(&self, joint: usize, cell: usize) -> Option<&ActiveEffect> {
+        let mut remembering = self.joints[joint].remembering();
+        let own = remembering.find(|(_, own)| *own == cell);
+        own.map(|(e, _)| e)
+    }
+
     fn sensor(&self, cell: usize) -> Option<&ActiveEffect> {
         self.joints.iter().flat_map(|plan| &plan.sense).nth(cell)
     }
@@ -264,7 +276,16 @@ impl PlantMemory {
                         .zip(plant.sensor(cell))
                         .map(|(m, e)| e.effect.slipped(m))
                 }
-                HiddenMemory::Effect(cell) => self.effects.0.get(cell).copied(),
+                HiddenMemory::Effect(cell) if unknown.quantity.is_of_body() => {
+                    let body = self.effects.0.get(cell).copied().map(BodyState::from);
+                    body.map(|body| [body.place, body.speed])
+                }
+                HiddenMemory::Effect(cell) => {
+                    let memory = self.effects.0.get(cell).copied();
+                    memory
+                        .zip(plant.remembering(unknown.joint, cell))
+                        .map(|(m, e)| [e.effect.displacement(m), 0.0])
+                }
                 HiddenMemory::Input => None,
             };
             at.map(|at| unknown.of(at))
@@ -312,11 +333,12 @@ impl EffectMemory {
             let HiddenMemory::Effect(at) = unknown.place else {
                 continue;
             };
-            if matches!(
-                unknown.quantity,
-                HiddenQuantity::Place { .. } | HiddenQuantity::Speed { .. }
-            ) {
-                unknown.put(&mut self.0[at], *value);
+            if unknown.quantity.is_of_body() {
+                let body = BodyState::from(self.0[at]);
+                let mut moving = [body.place, body.speed];
+                unknown.put(&mut moving, *value);
+                let [place, speed] = moving;
+                self.0[at] = BodyState { place, speed }.into();
             }
             let HiddenQuantity::Amount { most } = unknown.quantity else {
                 continue;
@@ -337,8 +359,7 @@ impl EffectMemory {
             }
             if let HiddenMemory::Effect(cell) = unknown.place {
                 let joint = unknown.joint;
-                let mut remembering = plant.joints[joint].remembering();
-                if let Some((e, _)) = remembering.find(|(_, own)| *own == cell) {
+                if let Some(e) = plant.remembering(joint, cell) {
                     let mut at = [0.0; 2];
                     unknown.put(&mut at, *value);
                     let state = StepState::at_rest(angle[joint] - plant.zeros_rad[joint]);

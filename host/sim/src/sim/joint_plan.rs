@@ -1,6 +1,6 @@
 //! What acts on one joint, sorted by where it acts.
 
-use crate::effects::{Coupling, Effect, Gear, MemoryCell, Site, StartUnknown};
+use crate::effects::{BodyState, Coupling, Effect, Gear, MemoryCell, Site, StartUnknown};
 use crate::model::Drive;
 
 /// Most values an effect has.
@@ -30,7 +30,7 @@ impl ActiveEffect {
     /// What it remembers, among the cells of the plant.
     #[inline]
     pub fn recall(&self, cells: &[MemoryCell]) -> MemoryCell {
-        self.cell.map_or([0.0; 2], |cell| cells[cell])
+        self.cell.map_or(MemoryCell::EMPTY, |cell| cells[cell])
     }
 }
 
@@ -138,7 +138,8 @@ impl JointPlan {
 
     /// Speed of the motor, rad/s, where the joint has this one.
     pub fn motor_speed_rad_s(&self, cells: &[MemoryCell], joint_rad_s: f64) -> f64 {
-        let winding_rad_s = self.gear_cell.map_or(0.0, |cell| cells[cell][1]);
+        let winding = |cell: usize| BodyState::from(cells[cell]).speed;
+        let winding_rad_s = self.gear_cell.map_or(0.0, winding);
         let is_known = !winding_rad_s.is_nan();
         joint_rad_s + if is_known { winding_rad_s } else { 0.0 }
     }

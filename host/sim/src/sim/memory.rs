@@ -1,13 +1,12 @@
 //! What carries over from one step to the next, and from one stretch of a motion to the stretch
 //! after it: readings of encoders with memory, and what drives and joints remember.
 
-use super::auxiliary::UNKNOWN;
 use super::drive::DriveInput;
 use super::joint_plan::JointPlan;
 use super::plant::Plant;
 use super::run::StartState;
 use super::sensor_state::SensorState;
-use crate::effects::{MemoryCell, StepState};
+use crate::effects::{BodyState, MemoryCell, StepState};
 
 /// Memory of a plant between the stretches of one motion.
 #[derive(Debug, Clone, Default)]
@@ -32,7 +31,7 @@ pub(super) struct EffectMemory(pub Vec<MemoryCell>);
 impl EffectMemory {
     /// Where a motion begins at these angles and speeds, nothing being known of before.
     pub fn beginning(plant: &Plant, angle: &[f64], speed: &[f64]) -> EffectMemory {
-        let mut memory = EffectMemory(vec![[0.0; 2]; plant.remembers]);
+        let mut memory = EffectMemory(vec![MemoryCell::EMPTY; plant.remembers]);
         for (joint, plan) in plant.joints.iter().enumerate() {
             let at = StepState {
                 speed_rad_s: speed[joint],
@@ -42,11 +41,11 @@ impl EffectMemory {
                 memory.0[cell] = e.effect.recall(e.values(), &at);
             }
             if let Some(cell) = plan.gear_cell {
-                memory.0[cell] = UNKNOWN;
+                memory.0[cell] = BodyState::UNKNOWN.into();
             }
         }
         if let Some((_, cell)) = plant.base {
-            memory.0[cell..cell + 2].fill(UNKNOWN);
+            memory.0[cell..cell + 2].fill(BodyState::UNKNOWN.into());
         }
         memory
     }

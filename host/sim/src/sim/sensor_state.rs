@@ -154,7 +154,7 @@ fn trail_behind<'a>(
 ) {
     for (active, cell) in sense.iter().zip(cells) {
         if let Some(trail) = active.effect.trail_rad(active.values(), slope) {
-            *cell = Some([reading, reading - trail, 0.0, 0.0]);
+            *cell = Some(SenseMemory::reads(reading - trail, reading));
             reading -= trail;
         } else if let Some(memory) = *cell {
             let [slipped_rad, _] = active.effect.slipped(memory);

@@ -2,7 +2,9 @@
 
 use super::median_seconds;
 use handstand::diagnose::{DiagnoseOptions, Verdict, diagnose};
-use handstand::fitting::{FitOptions, FitProblem, Horizon, best_fit, fit, fit_start_states};
+use handstand::fitting::{
+    FitOptions, FitProblem, Horizon, best_fit, best_fit_in_longest_windows, fit, fit_start_states,
+};
 use handstand::log::{LogRequest, read};
 use handstand::model::ParameterPath;
 use handstand::motion::Motion;
@@ -168,7 +170,8 @@ impl Arm {
             let mut left = 0.0;
             times.push(median_seconds(1, || {
                 let data = FitProblem::new(&start, self.motions.clone(), Horizon::Whole);
-                let found = best_fit(&start, &self.free, &data);
+                let (found, _) =
+                    best_fit_in_longest_windows(&start, &self.free, data, Horizon::Whole);
                 left = best_fit(&found.model, &[], &judged).rms(&judged);
                 values = found.values();
             }));

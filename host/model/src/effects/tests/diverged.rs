@@ -18,7 +18,7 @@ fn no_effect_panics_and_what_is_no_number_is_read_as_none() {
                 duty: lost,
                 full_torque_nm: 1.0,
                 supply_ratio: 1.0,
-                memory: [0.0; 2],
+                memory: MemoryCell::EMPTY,
             };
             effect.drive(&values, lost, &drive);
             effect.torque(&values, &JointState::undriven(lost, lost));

@@ -21,7 +21,7 @@ fn drives_weaken_as_their_laws_say() {
         duty: 0.5,
         full_torque_nm: 1.5,
         supply_ratio: 0.9,
-        memory: [0.0; 2],
+        memory: MemoryCell::EMPTY,
     };
     let drive = |id, value| effect(id).drive(&[value], 0.75, &at);
     near(drive("supply_sensitivity", 1.0), 0.675);

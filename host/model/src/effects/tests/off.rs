@@ -17,7 +17,7 @@ fn off_is_identity_for_commands_and_drives() {
                     duty,
                     full_torque_nm: 1.5,
                     supply_ratio: 0.8,
-                    memory: [0.0; 2],
+                    memory: MemoryCell::EMPTY,
                 };
                 assert_eq!(effect.drive(&off, 1.5 * duty, &at), 1.5 * duty, "{id}");
             }

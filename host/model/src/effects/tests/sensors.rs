@@ -38,7 +38,10 @@ fn a_grip_that_slips_loses_the_way_it_slips_and_no_more() {
         }
     };
     let slipped_at = |values: &[f64], end_s: f64| {
-        let mut memory = Some([0.0; 4]);
+        let mut memory = Some(SenseMemory {
+            shaft_rad_s: Some(0.0),
+            ..SenseMemory::default()
+        });
         let mut read_rad = 0.0;
         for step in 1..=(end_s / step_s).round() as usize {
             let encoded = hand(step as f64 * step_s);
