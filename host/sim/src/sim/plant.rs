@@ -267,3 +267,45 @@ fn shuffled(model: &Model, motion: &Motion) -> Vec<Vec<f64>> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn laws_that_remember_go_on_in_short_steps() {
+        let toml = r#"
+[rig]
+name = "arm"
+angle_zero = "hanging"
+step_s = 0.01
+
+[[link]]
+com_m = 0.1
+mass_kg = 0.2
+inertia_kg_m2 = 0.002
+
+[[joint]]
+drive = "torque"
+
+[log]
+time = { column = "t", unit = "s" }
+
+[[log.joint]]
+position = { column = "q", unit = "rad" }
+input = { column = "u", unit = "N m" }
+"#;
+        let step_s = |effect: &str| {
+            let model = Model::parse(&format!("{toml}{effect}"), Path::new("arm.toml")).unwrap();
+            Plant::without_log(&model).step_s
+        };
+        assert_eq!(step_s(""), 0.01);
+        let viscous = "[[effect]]\nkind = \"viscous\"\njoint = 1\ncoefficient_nm_s_rad = 0.01\n";
+        assert_eq!(step_s(viscous), 0.01);
+        let lag = "[[effect]]\nkind = \"drive_lag\"\njoint = 1\ntime_constant_s = 0.05\n";
+        assert_eq!(step_s(lag), REMEMBERED_STEP_S);
+        let trails = "[[effect]]\nkind = \"sensor_lag\"\njoint = 1\ntime_constant_s = 0.05\n";
+        assert_eq!(step_s(trails), REMEMBERED_STEP_S);
+    }
+}
