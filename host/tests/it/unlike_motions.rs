@@ -118,13 +118,14 @@ fn what_one_fitted_motion_alone_shows_is_named_and_not_proved() {
 }
 
 #[test]
-fn what_only_motions_held_out_show_is_not_explained() {
+fn what_one_motion_held_out_alone_shows_is_told_and_not_claimed() {
     let split: [&[&str]; 2] = [&["weak1.csv", "weak2.csv"], &["strong.csv"]];
     let found = diagnosed(&bench(), split, &ALL);
-    assert_eq!(found.verdict, Verdict::Unexplained, "{:?}", found.summary);
+    assert_eq!(found.verdict, Verdict::Ambiguous, "{:?}", found.summary);
+    assert_eq!(found.shows_alone, ["strong.csv"]);
+    assert_eq!(found.effects[0].address(), "torque_saturation@1");
+    let limit = found.effects[0].parameters[0].value;
+    assert!((limit / LIMIT_NM - 1.0).abs() < 0.01, "{limit}");
     let said = &found.summary[0];
-    assert!(
-        said.contains("only motions held out show (strong.csv)"),
-        "{said}"
-    );
+    assert!(said.starts_with("Shows in strong.csv alone: "), "{said}");
 }

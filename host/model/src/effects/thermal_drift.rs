@@ -25,8 +25,8 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
     on_slide: OnSlide::Same,
-    law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x from 0 (cold) to 1 where \
-     a log begins",
+    law: "torque / (1 + rise * x), time_constant_s * dx/dt = u^2 - x, x = 0 where a log \
+     begins",
     parameters: &[
         Parameter::of(
             "rise",
@@ -67,16 +67,10 @@ impl Law for ThermalDrift {
         true
     }
 
-    /// The warmth.
+    /// A motor that is warm before a log, and stays so, is weaker by a factor: every wrong stall
+    /// torque would have this law beside it.
     fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
-        Some(StartUnknown::Amount { most: 1.0 })
-    }
-
-    fn recall_unknown(&self, _values: &[f64], unknown: f64, _at: &StepState) -> MemoryCell {
-        Warmth {
-            mean_square: unknown,
-        }
-        .into()
+        Some(StartUnknown::Nothing)
     }
 
     fn remember(&self, values: &[f64], memory: &mut MemoryCell, at: &StepState, step_s: f64) {

@@ -1,7 +1,7 @@
 //! Unknowns that no reading tells. Of every stretch's beginning: where in its play a joint is and
 //! how fast it crosses it, how far dry friction is bent before it slides. Of a motion's beginning:
-//! which input a drive had that is late, or gets on slowly, before the log; how warm it was; for
-//! how long it had been overloaded; where its motor was behind a gear, or the base. Each effect
+//! which input a drive had that is late, or gets on slowly, before the log; for how long it had
+//! been overloaded; where its motor was behind a gear, or the base. Each effect
 //! says which it has
 //! ([`Law::start_unknown`](crate::effects::Law::start_unknown)).
 //!
