@@ -1,8 +1,8 @@
 //! A first look at every candidate on top of a hypothesis.
 //!
-//! Those whose change of the prediction promises something get a glance, a fit as far as derivatives
-//! known before lead, of few candidates all; the best third, but the best few only where the rest
-//! is hopeless beside the first, gets a look, for which derivatives are taken again.
+//! Those whose change of the prediction promises something, of few candidates all, get a glance, a
+//! fit as far as derivatives known before lead; the best third, but the best few only where the
+//! rest is hopeless beside the first, gets a look, for which derivatives are taken again.
 
 use super::budget::{FINALISTS, FIRST_LOOK_STEPS, LOOK, SECOND_LOOKS};
 use super::evaluator::{Evaluator, Reach};

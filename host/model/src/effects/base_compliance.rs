@@ -101,8 +101,9 @@ impl Law for BaseCompliance {
     }
 
     /// Where the base is.
+    /// Anywhere, and moving anyhow, a soft base would take the place of whatever is missing.
     fn start_unknown(&self, _values: &[f64]) -> Option<StartUnknown> {
-        Some(StartUnknown::Body)
+        Some(StartUnknown::Nothing)
     }
 
     fn body(&self, values: &[f64], _joint: usize, rig: &mut Rig) {

@@ -192,8 +192,8 @@ pub enum StartUnknown {
         /// Whether the drive gets from that to its input slowly, not only late.
         is_slow: bool,
     },
-    /// Where a motion begins: where the body is that the effect puts beside the links, and how fast
-    /// it moves.
+    /// Where a motion begins: where the motor is that turns apart from its joint, and how fast it
+    /// moves.
     Body,
     /// Where a motion begins: how much has come together before, from nothing, as in a drive that
     /// has rested, to this.

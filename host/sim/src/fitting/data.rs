@@ -114,8 +114,8 @@ impl FitProblem {
         }
     }
 
-    /// The same motions and weights in the longest windows, up to the horizon, in which start errors
-    /// stay small for this model, too; none where more than half as many are left.
+    /// The same motions and weights in the longest windows, up to the horizon, in which start
+    /// errors stay small for this model, too; none where more than half as many are left.
     pub(super) fn lengthened(&self, model: &Model, horizon: Horizon) -> Option<FitProblem> {
         if self
             .stable
@@ -196,7 +196,7 @@ impl FitProblem {
         }
     }
 
-    /// The same motions with so many of the windows, spread evenly over all; all, if there are fewer.
+    /// The same motions with so many of the windows, spread evenly over all, or all of fewer.
     pub fn with_windows(mut self, wanted: usize) -> FitProblem {
         let all = self.windows.len();
         if wanted < all {

@@ -1,8 +1,7 @@
 //! Unknowns that no reading tells. Of every stretch's beginning: where in its play a joint is and
 //! how fast it crosses it, how far dry friction is bent before it slides. Of a motion's beginning:
 //! which input a drive had that is late, or gets on slowly, before the log; for how long it had
-//! been overloaded; where its motor was behind a gear, or the base. Each effect
-//! says which it has
+//! been overloaded; where its motor was behind a gear. Each effect says which it has
 //! ([`Law::start_unknown`](crate::effects::Law::start_unknown)).
 //!
 //! A stretch takes over what the one before came to remember. That is as wrong at its end as the
@@ -13,7 +12,7 @@ use super::joint_plan::{ActiveEffect, JointPlan};
 use super::memory::{EffectMemory, PlantMemory};
 use super::plant::Plant;
 use super::sensor_state::SensorState;
-use crate::effects::{BaseSpring, BodyState, StartUnknown, StepState};
+use crate::effects::{BodyState, StartUnknown, StepState};
 use crate::model::Drive;
 use crate::motion::Motion;
 
@@ -44,7 +43,7 @@ pub enum HiddenQuantity {
         /// Whether the drive gets from that to its input slowly, not only late.
         is_slow: bool,
     },
-    /// Of a motion: where a body beside the links is, as a share, -1 to 1, of its scale.
+    /// Of a motion: where a motor behind a gear is, as a share, -1 to 1, of its scale.
     Place {
         /// rad (m) per 1.
         scale: f64,
@@ -84,7 +83,7 @@ impl HiddenQuantity {
 /// By how many times an input before the log may be farther from the first than those of the log.
 const BEYOND: f64 = 1.5;
 
-/// How many times a drive's torque at standstill, or the weight on a base, may press.
+/// How many times a drive's torque at standstill may press.
 const LOADED: f64 = 2.0;
 
 /// What is unknown of a body beside the links that may be displaced by so much, rad (m).
@@ -109,11 +108,8 @@ enum HiddenMemory {
 }
 
 impl HiddenUnknown {
-    /// Those of a plant's joints, and of its base with the first of its cells and its load, N.
-    pub(super) fn all(
-        joints: &[JointPlan],
-        base: Option<((BaseSpring, usize), f64)>,
-    ) -> Vec<HiddenUnknown> {
+    /// Those of a plant's joints.
+    pub(super) fn all(joints: &[JointPlan]) -> Vec<HiddenUnknown> {
         let mut all = Vec::new();
         let mut sensors = 0;
         for (joint, plan) in joints.iter().enumerate() {
@@ -151,18 +147,6 @@ impl HiddenUnknown {
             }
             if let Some(is_slow) = plan.depends_on_input_before {
                 add(HiddenMemory::Input, HiddenQuantity::Before { is_slow });
-            }
-        }
-        if let Some(((spring, cell), load_n)) = base {
-            let most = LOADED * load_n / spring.stiffness_n_m;
-            for cell in [cell, cell + 1] {
-                let of_body =
-                    body(most, 0.0, spring.natural_rad_s()).map(|quantity| HiddenUnknown {
-                        joint: 0,
-                        quantity,
-                        place: HiddenMemory::Effect(cell),
-                    });
-                all.extend(of_body);
             }
         }
         all

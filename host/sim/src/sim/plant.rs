@@ -126,7 +126,7 @@ impl Plant {
             has_offsets: offsets_s().any(|offset_s| offset_s != 0.0),
             late_s: offsets_s().reduce(f64::max).unwrap_or(0.0),
             remembers: of_joints + if base.is_some() { 2 } else { 0 },
-            hidden: HiddenUnknown::all(&joints, base.map(|base| (base, weight_n(&rig)))),
+            hidden: HiddenUnknown::all(&joints),
             auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
             base,
             tree: rig.tree.as_ref().map(SpatialEquations::new),
@@ -199,12 +199,6 @@ impl Plant {
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
-}
-
-/// What a base carries, N.
-fn weight_n(rig: &Rig) -> f64 {
-    let mass_kg: f64 = rig.chain.links.iter().map(|link| link.mass_kg).sum();
-    mass_kg * rig.chain.gravity_m_s2
 }
 
 fn each<T>(model: &Model, value: impl Fn(usize) -> T) -> Vec<T> {
