@@ -265,7 +265,8 @@ mod tests {
     fn what_the_model_frees_is_not_named_where_it_knows_something_of_it() {
         let text = "[rig]\nname = \"arm\"\nangle_zero = \"hanging\"\n\
                     [[link]]\ncom_m = 0.1\nmass_kg = 0.2\ninertia_kg_m2 = 1e-3\n\
-                    [[joint]]\ndrive = \"passive\"\n[log]\ntime = { column = \"t\", unit = \"s\" }\n\
+                    [[joint]]\ndrive = \"passive\"\n\
+                    [log]\ntime = { column = \"t\", unit = \"s\" }\n\
                     [[log.joint]]\nposition = { column = \"q\", unit = \"rad\" }\n";
         let stated = format!("{text}[uncertainty]\ntypical = true\n");
         let model = |text: &str| Model::parse(text, Path::new("arm.toml")).unwrap();
