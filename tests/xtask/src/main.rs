@@ -1,4 +1,4 @@
-//! `cargo xtask`: the project's own chores. What measures is another program, built in release when
+//! `cargo xtask`: the project's own chores. What measures is another program, built when
 //! it is asked for: the chores here start at once.
 
 mod checks;
@@ -120,17 +120,17 @@ fn main() -> ExitCode {
     measure(name, &words.words)
 }
 
+/// Other programs are met as a library user can build this one at best; all else is measured as
+/// `cargo install` builds it.
+fn profile(chore: &str) -> &'static str {
+    if chore == "peers" { "dist" } else { "release" }
+}
+
 /// Builds the measuring program if need be, and becomes it: its exit code is ours.
 fn measure(name: &str, words: &[OsString]) -> ExitCode {
-    let run = [
-        "run",
-        "--release",
-        "--quiet",
-        "--package",
-        "handstand-measure",
-    ];
-    let mut cargo = cargo(&run);
-    cargo.args(["--bin", "measure", "--", name]).args(words);
+    let mut cargo = cargo(&["run", "--profile", profile(name), "--quiet"]);
+    cargo.args(["--package", "handstand-measure", "--bin", "measure"]);
+    cargo.args(["--", name]).args(words);
     match cargo.status() {
         Ok(status) => {
             let code = status.code().and_then(|code| u8::try_from(code).ok());

@@ -49,7 +49,8 @@ enum Task {
 }
 
 const NOTES: [&str; 2] = [
-    "Times are seconds of wall clock, medians; the library uses every core, SciPy one.",
+    "Times are seconds of wall clock, medians; the library uses every core, SciPy one. It is built \
+     with the profile `dist`: thin LTO.",
     "A start converges when it leaves at most 1.1 times the floor: with SciPy over one free run; \
      with the library over the longest stable windows, and then every value must be within 10 % \
      of the truth too.",
