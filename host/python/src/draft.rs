@@ -7,9 +7,12 @@ use crate::value::plain;
 use handstand::first_model::estimate;
 use handstand::fitting::StopSwitch;
 use handstand::log::RawLog;
-use handstand::log::init::Draft as LogDraft;
+use handstand::log::init::{Draft as LogDraft, LerobotUnit, RobotDraft, RobotRequest};
+use handstand::log::lerobot::Calibration;
+use handstand::model::import::SpacePlan;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// A model started from a log, and what was guessed.
@@ -37,13 +40,25 @@ pub struct Draft {
 ///     What they are measured from: the link before, or the world.
 /// length_m, mass_kg : list of float
 ///     Length of each link from joint to joint, m, and its mass, kg, from the base outwards.
+/// robot : file name or path
+///     URDF or MJCF file of the robot: the model is that robot in space, its columns matched by the
+///     joints' names. Then neither `angle_zero`, `angles`, `length_m` nor `mass_kg`.
+/// lock : dict of str to float
+///     Joints of the robot that are held, and where, rad or m.
+/// names : dict of str to str
+///     What the log calls joints of the robot, where the names do not tell.
+/// calibration : file name or path
+///     LeRobot's calibration, which per cent of a joint's range refer to.
+/// unit : "rad", "deg" or "percent"
+///     In what LeRobot wrote angles.
 ///
 /// Returns
 /// -------
 /// Draft
 #[pyfunction]
 #[pyo3(signature = (log, *, name=None, drive=None, angle_zero=None, angles=None, length_m=None,
-                    mass_kg=None))]
+                    mass_kg=None, robot=None, lock=None, names=None, calibration=None,
+                    unit=None))]
 pub fn init(
     log: &Bound<'_, PyAny>,
     name: Option<String>,
@@ -52,6 +67,11 @@ pub fn init(
     angles: Option<String>,
     length_m: Option<Vec<f64>>,
     mass_kg: Option<Vec<f64>>,
+    robot: Option<PathBuf>,
+    lock: Option<BTreeMap<String, f64>>,
+    names: Option<BTreeMap<String, String>>,
+    calibration: Option<PathBuf>,
+    unit: Option<String>,
 ) -> PyResult<Draft> {
     let frame = if is_frame(log)? {
         Some(FrameFile::of(log)?)
@@ -67,16 +87,45 @@ pub fn init(
         None => exception(error),
     };
     let log = RawLog::read_request(&asked).map_err(told)?;
+    let of_a_robot = [
+        lock.is_some(),
+        names.is_some(),
+        calibration.is_some(),
+        unit.is_some(),
+    ];
+    let planar = [
+        angle_zero.is_some(),
+        angles.is_some(),
+        length_m.is_some(),
+        mass_kg.is_some(),
+    ];
+    if let Some(file) = robot {
+        if planar.contains(&true) {
+            return Err(usage(
+                "angle_zero, angles, length_m and mass_kg are of a model without a robot's file",
+                "leave them out: the robot's file has them",
+            ));
+        }
+        let robot = RobotWords {
+            file,
+            name,
+            drive,
+            lock: lock.unwrap_or_default(),
+            names: names.unwrap_or_default(),
+            calibration,
+            unit,
+        };
+        return robot.draft(&log, &asked.name(), told);
+    }
+    if of_a_robot.contains(&true) {
+        return Err(usage(
+            "lock, names, calibration and unit are of a robot's file",
+            "give robot=\"so101.urdf\", too",
+        ));
+    }
     let mut draft = LogDraft::of(&log, &asked.name(), drive.as_deref()).map_err(told)?;
     if let Some(drive) = drive.filter(|drive| !draft.has_input_of(drive)) {
-        return Err(usage(
-            format!(
-                "no column that changes is named as what a drive of kind {drive:?} is told: {}",
-                log.names.join(", ")
-            ),
-            "rename the input's column, such as tau_nm, duty, goal_rad, goal_speed_rad_s, or leave \
-             `drive` out",
-        ));
+        return Err(no_input(&drive, &log));
     }
     for (what, answer) in [
         ("name", name),
@@ -99,6 +148,80 @@ pub fn init(
         guesses: json!(draft.guesses),
         values: json!(draft.values().map_err(exception)?),
     })
+}
+
+/// Why a drive cannot be had.
+fn no_input(drive: &str, log: &RawLog) -> PyErr {
+    usage(
+        format!(
+            "no column that changes is named as what a drive of kind {drive:?} is told: {}",
+            log.names.join(", ")
+        ),
+        "rename the input's column, such as tau_nm, duty, goal_rad, goal_speed_rad_s, or leave \
+         `drive` out",
+    )
+}
+
+/// What is said of a robot's file.
+struct RobotWords {
+    file: PathBuf,
+    name: Option<String>,
+    drive: Option<String>,
+    lock: BTreeMap<String, f64>,
+    names: BTreeMap<String, String>,
+    calibration: Option<PathBuf>,
+    unit: Option<String>,
+}
+
+impl RobotWords {
+    /// The model of the robot in space with the log's columns.
+    fn draft(
+        self,
+        log: &RawLog,
+        log_name: &str,
+        told: impl Fn(handstand::Error) -> PyErr,
+    ) -> PyResult<Draft> {
+        let unit = match self.unit.as_deref() {
+            Some(unit) => Some(LerobotUnit::named(unit).ok_or_else(|| {
+                usage(
+                    format!("unit {unit:?}"),
+                    "one of \"rad\", \"deg\", \"percent\"",
+                )
+            })?),
+            None => None,
+        };
+        let read = |error| exception(handstand::Error::file(&self.file, "read", error));
+        let text = std::fs::read_to_string(&self.file).map_err(read)?;
+        let calibration = (self.calibration.as_deref()).map(Calibration::read);
+        let calibration = calibration.transpose().map_err(exception)?;
+        let names: Vec<(String, String)> = self.names.into_iter().collect();
+        // A model that is saved elsewhere still finds its robot.
+        let absolute = std::path::absolute(&self.file).map_err(read)?;
+        let space = SpacePlan {
+            robot: absolute.display().to_string(),
+            locked: self.lock.into_iter().collect(),
+        };
+        let request = RobotRequest {
+            text: &text,
+            file: &self.file,
+            space: &space,
+            name: self.name.as_deref(),
+            mapped: &names,
+            calibration: calibration.as_ref(),
+            unit,
+            drive: self.drive.as_deref(),
+        };
+        let draft = RobotDraft::of(log, log_name, &request).map_err(told)?;
+        if let Some(drive) = self.drive.filter(|drive| !draft.has_input_of(drive)) {
+            return Err(no_input(&drive, log));
+        }
+        let file = PathBuf::from("model.toml");
+        Ok(Draft {
+            model: Model::of(draft.imported.toml, file).map_err(exception)?,
+            guesses: json!(draft.guesses),
+            values: json!([]),
+        })
+    }
 }
 
 #[pymethods]

@@ -1,28 +1,31 @@
-//! `handstand import ROBOT.urdf|ROBOT.xml [--joints NAME...] -o MODEL.toml`: a model out of another
-//! simulator's file.
+//! `handstand import ROBOT.urdf|ROBOT.xml -o MODEL.toml`: a model out of another simulator's file.
 //!
-//! Reads URDF and MJCF. The model is the planar chain of the joints named, from the base to the
-//! tip; without names that with most hinges. Masses, moments of inertia, armature, damping,
-//! friction, springs and actuators are carried over; other joints are held where the file has
-//! them. What is not carried is listed on stderr, and in the file, as are axes that are parallel
-//! but for rounding, and moments of inertia that no body has. Joints that make no planar chain are
-//! refused with those of the robot that do.
+//! Reads URDF and MJCF. The model is of the whole robot: the planar chain of its joints where they
+//! make one, else the robot in space, with all of its hinges and slides but those held by
+//! `--lock gripper=0.3`. A model in space names the robot's file, whose shape it keeps, and notes
+//! its SHA-256; `--space` makes one of a planar chain too.
+//!
+//! `--joints` takes the planar chain of the joints named, from the base to the tip, `--planar` that
+//! with most hinges; other joints are held where the file has them. Joints that make no planar
+//! chain are refused with those of the robot that do.
+//!
+//! Masses, moments of inertia, armature, damping, friction, springs and actuators are carried over.
+//! What is not carried is listed on stderr, and in the file, as are axes that are parallel but for
+//! rounding, and moments of inertia that no body has.
 //!
 //! ```console
+//! $ handstand import so101.urdf --lock gripper=0.3 -o arm.toml
 //! $ handstand import robot.urdf --joints shoulder elbow -o arm.toml
 //! ```
 //!
-//! With `--space` the model is the robot in space: all of its hinges and slides, but those held by
-//! `--lock gripper=0.3`. It names the robot's file, whose shape it keeps, and notes its SHA-256.
-//!
 //! Without `-o` the file's text goes to stdout. `--json` prints `format` (`urdf`, `mjcf`), `file`
-//! (or null), `text` (null where a file was written), `joints`, `not_carried` and `notes` (`part`,
-//! `name`, `line`, `why`).
+//! (or null), `text` (null where a file was written), `joints`, `in_space`, `not_carried` and `notes`
+//! (`part`, `name`, `line`, `why`).
 
 use super::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::model::Model;
-use handstand::model::import::{ImportPlan, Imported, Locked, SpacePlan, import};
+use handstand::model::import::{ImportPlan, Imported, Locked, SpacePlan, import, import_whole};
 use handstand::output::vacant;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -33,14 +36,18 @@ pub struct ImportArgs {
     /// URDF or MJCF file
     #[arg(value_name = "ROBOT")]
     robot: PathBuf,
-    /// Joints of the chain, from the base to the tip; the most hinges in a row without
+    /// Take the planar chain of these joints, from the base to the tip
     #[arg(long, num_args = 1.., value_name = "NAME")]
     joints: Vec<String>,
-    /// Take the robot in space, all of its joints, instead of a planar chain
+    /// Take the planar chain of the most hinges in a row
     #[arg(long, conflicts_with = "joints")]
+    planar: bool,
+    /// Take the robot in space, also where its joints make a planar chain
+    #[arg(long, conflicts_with_all = ["joints", "planar"])]
     space: bool,
     /// Joint of a robot in space that is held, and where, rad or m
-    #[arg(long, num_args = 1.., value_name = "NAME=VALUE", requires = "space")]
+    #[arg(long, num_args = 1.., value_name = "NAME=VALUE")]
+    #[arg(conflicts_with_all = ["joints", "planar"])]
     #[arg(value_parser = locked)]
     lock: Vec<Locked>,
     /// Drive joints without an actuator by a torque; they are passive without
@@ -99,22 +106,31 @@ pub(super) fn check_in_space(imported: &Imported, output: Option<&Path>) -> Resu
     Model::parse(&imported.toml, file).map(drop)
 }
 
+/// The model that is asked for of a robot's text.
+fn taken(args: &ImportArgs, text: &str) -> Result<Imported> {
+    let space = SpacePlan {
+        robot: seen_from(args.output.as_deref(), &args.robot),
+        locked: args.lock.clone(),
+    };
+    if !args.planar && !args.space && args.joints.is_empty() {
+        return import_whole(text, &args.robot, args.driven, &space);
+    }
+    let plan = ImportPlan {
+        joints: args.joints.clone(),
+        driven: args.driven,
+        space: args.space.then_some(space),
+    };
+    import(text, &args.robot, &plan)
+}
+
 /// Imports, and lists what is not carried.
 pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
     if let Some(file) = &args.output {
         vacant(file, args.force)?;
     }
-    let plan = ImportPlan {
-        joints: args.joints.clone(),
-        driven: args.driven,
-        space: args.space.then(|| SpacePlan {
-            robot: seen_from(args.output.as_deref(), &args.robot),
-            locked: args.lock.clone(),
-        }),
-    };
-    let imported = import(&input::text(&args.robot)?, &args.robot, &plan)?;
+    let imported = taken(args, &input::text(&args.robot)?)?;
     tell(&imported, console);
-    if args.space {
+    if imported.in_space {
         check_in_space(&imported, args.output.as_deref())?;
     }
     if let Some(file) = &args.output {
@@ -123,6 +139,7 @@ pub fn run(args: &ImportArgs, console: &Console) -> Result<ExitStatus> {
     let data = json!({
         "format": imported.format,
         "joints": imported.joints,
+        "in_space": imported.in_space,
         "not_carried": imported.left_out,
         "notes": imported.notes,
     });

@@ -167,7 +167,9 @@ const MOST = Number($("#files")?.dataset.most ?? 0);
 const bring = async (files) => {
   let last = null;
   const refused = [];
-  for (const file of files) {
+  // A robot's file takes the columns of the first log, and a model names a robot's file.
+  const rank = ({ name }) => /\.toml$/i.test(name) ? 2 : /\.(urdf|xml)$/i.test(name) ? 1 : 0;
+  for (const file of [...files].sort((a, b) => rank(a) - rank(b))) {
     if (file.size > MOST) {
       const [has, most] = [file.size, MOST].map((bytes) => Math.round(bytes / 2 ** 20));
       say(`${file.name} has ${has} MiB; a file may have up to ${most} MiB.`);

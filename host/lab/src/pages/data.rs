@@ -154,7 +154,7 @@ pub fn findings(session: &LabSession, findings: &[LogFinding]) -> Markup {
                 span class={ "severity " (severity) } { (severity) } " "
                 (session.shortened(&finding.statement()))
                 @if finding.severity != Severity::Note || !finding.remedy.is_empty() {
-                    span.note { " (" (finding.remedy) ")" }
+                    span.note { " (" (session.shortened(&finding.remedy)) ")" }
                 }
             }
         } }

@@ -198,7 +198,7 @@ pub(super) async fn columns(
     act(lab, number, "data", move |session, saved| {
         shown.check(saved)?;
         let step = saved.step().ok_or(LabError::NotFound("model"))?;
-        let toml = set_log_columns(&step.toml, std::path::Path::new("model.toml"), &choice)?;
+        let toml = set_log_columns(&step.toml, &session.model_path(saved.current), &choice)?;
         Ok(session.push_step(SavedStep::by_hand("columns picked", toml))?)
     })
     .await

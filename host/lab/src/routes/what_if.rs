@@ -133,7 +133,7 @@ pub(super) async fn keep(
 ) -> Answer {
     act(lab, number, "learn", move |session, saved| {
         shown.check(saved)?;
-        let file = std::path::Path::new("model.toml");
+        let file = &session.model_path(saved.current);
         let step = saved.step().ok_or(LabError::NotFound("model"))?;
         let model = Model::parse(&step.toml, file)?;
         let (with, added) = tried.applied_to(&model)?;

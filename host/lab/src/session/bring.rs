@@ -6,10 +6,10 @@ use super::saved::{SavedSession, SavedStep};
 use super::work::unchanged;
 use crate::error::{Error, Result};
 use crate::first_model::estimate;
-use crate::log::init::Draft;
+use crate::log::init::{Draft, RobotDraft, RobotRequest};
 use crate::log::{LogRequest, RawLog};
 use crate::model::Model;
-use crate::model::import::{ImportPlan, Remark, import};
+use crate::model::import::{Imported, Remark, SpacePlan, import_whole};
 use std::path::Path;
 
 /// Endings of files that a model is in.
@@ -24,29 +24,23 @@ pub fn is_model(name: &Path) -> bool {
     })
 }
 
-/// The step that a model file makes; URDF and MJCF are imported as `handstand import` does, and
-/// what is not carried becomes the step's note.
+/// Whether a file of this name is another simulator's: URDF or MJCF.
+pub(super) fn is_robot(name: &Path) -> bool {
+    name.extension().is_some_and(|ending| {
+        ending.eq_ignore_ascii_case("urdf") || ending.eq_ignore_ascii_case("xml")
+    })
+}
+
+/// Checks a model's file on its own: one of this program's, or another simulator's.
 ///
 /// # Errors
 /// A text that is no model.
-pub fn model_step(name: &Path, text: &str) -> Result<SavedStep> {
-    let file = name.file_name().unwrap_or(name.as_os_str());
-    let file = file.to_string_lossy();
-    let foreign = name.extension().is_some_and(|ending| {
-        ending.eq_ignore_ascii_case("urdf") || ending.eq_ignore_ascii_case("xml")
-    });
-    if !foreign {
-        Model::parse(text, name)?;
-        return Ok(SavedStep::by_hand(format!("from {file}"), text));
+pub(super) fn check_model(file: &Path, text: &str) -> Result<()> {
+    if is_robot(file) {
+        import_whole(text, file, false, &SpacePlan::default()).map(drop)
+    } else {
+        Model::parse(text, file).map(drop)
     }
-    let imported = import(text, name, &ImportPlan::default())?;
-    let joints = imported.joints.join(", ");
-    let title = format!("imported from {file}, joints {joints}");
-    let note = imported.left_out.iter().map(not_carried);
-    Ok(SavedStep {
-        note: note.collect::<Vec<_>>().join("; "),
-        ..SavedStep::by_hand(title, imported.toml)
-    })
 }
 
 fn not_carried(part: &Remark) -> String {
@@ -99,11 +93,91 @@ impl LabSession {
         })
     }
 
-    /// Takes a model file: as the first step, or as the next one.
+    /// The step that a model file makes, its robot's file copied into the session; `beside` is the
+    /// folder it lies in, where there is one.
+    ///
+    /// URDF and MJCF are imported as `handstand import` does; a robot in space with the columns of
+    /// the session's first log where its names are the joints', as `handstand init --robot` does.
+    /// What is not carried becomes the step's note.
     ///
     /// # Errors
-    /// A text that is no model, the system's refusal.
-    pub fn bring_model(&self, name: &Path, text: &str) -> Result<()> {
-        self.push_step(model_step(name, text)?)
+    /// A text that is no model, a robot's file that is not there, the system's refusal.
+    pub(super) fn model_step(
+        &self,
+        name: &Path,
+        text: &str,
+        beside: Option<&Path>,
+    ) -> Result<SavedStep> {
+        let file = name.file_name().unwrap_or(name.as_os_str());
+        let file = file.to_string_lossy();
+        if !is_robot(name) {
+            let toml = self.with_robot(name, text, beside)?;
+            Model::parse(&toml, &self.folder().join(&*file))?;
+            return Ok(SavedStep::by_hand(format!("from {file}"), toml));
+        }
+        let mut space = SpacePlan::default();
+        let mut imported = import_whole(text, name, false, &space)?;
+        let mut note: Vec<String> = Vec::new();
+        if imported.in_space {
+            space.robot = self.keep_robot(&file, text)?;
+            imported = match self.with_columns(name, text, &space) {
+                Some(Ok(draft)) => {
+                    let guesses = draft.guesses.iter();
+                    note.extend(guesses.map(|own| format!("{}: {}", own.what, own.guess)));
+                    draft.imported
+                }
+                Some(Err(why)) => {
+                    note.push(format!("columns are yet to be picked: {why}"));
+                    import_whole(text, name, false, &space)?
+                }
+                None => import_whole(text, name, false, &space)?,
+            };
+        }
+        note.extend(imported.left_out.iter().map(not_carried));
+        Ok(SavedStep {
+            note: note.join("; "),
+            ..SavedStep::by_hand(imported_title(&file, &imported), imported.toml)
+        })
     }
+
+    /// A robot in space with the columns of the session's first log, or why that log's are not its
+    /// joints'; none without a log.
+    fn with_columns(
+        &self,
+        name: &Path,
+        text: &str,
+        space: &SpacePlan,
+    ) -> Option<Result<RobotDraft>> {
+        let saved = self.saved();
+        let log = saved.logs.first()?;
+        let raw = match RawLog::read(&self.log_path(&log.file)) {
+            Ok(raw) => raw,
+            Err(why) => return Some(Err(why)),
+        };
+        let request = RobotRequest {
+            text,
+            file: name,
+            space,
+            name: None,
+            mapped: &[],
+            calibration: None,
+            unit: None,
+            drive: None,
+        };
+        Some(RobotDraft::of(&raw, &log.file, &request))
+    }
+
+    /// Takes a model file that a browser sent: as the first step, or as the next one.
+    ///
+    /// # Errors
+    /// As [`LabSession::model_step`].
+    pub fn bring_model(&self, name: &Path, text: &str) -> Result<()> {
+        self.push_step(self.model_step(name, text, None)?)
+    }
+}
+
+fn imported_title(file: &str, imported: &Imported) -> String {
+    let joints = imported.joints.join(", ");
+    let shape = if imported.in_space { "in space, " } else { "" };
+    format!("imported from {file}, {shape}joints {joints}")
 }

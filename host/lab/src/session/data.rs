@@ -18,7 +18,7 @@ pub const MOST_BYTES: usize = 256 << 20;
 /// Most logs of a session.
 const MOST_LOGS: usize = 64;
 /// Longest file name, characters.
-const LONGEST_NAME: usize = 80;
+pub(super) const LONGEST_NAME: usize = 80;
 
 /// A part of a file that is a log by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -67,12 +67,7 @@ impl LabSession {
     /// A kind of file that is not read, too many logs, the system's refusal.
     pub fn vacant_log(&self, name: &str) -> Result<(String, PathBuf)> {
         let file = plain_name(name)?;
-        if self.saved().logs.len() >= MOST_LOGS {
-            return Err(Error::usage(
-                format!("the session holds {MOST_LOGS} logs already"),
-                "remove one, or begin another session",
-            ));
-        }
+        self.has_room()?;
         let folder = self.folder().join("logs");
         std::fs::create_dir_all(&folder).map_err(|why| Error::file(&folder, "make", why))?;
         let (stem, ending) = file.rsplit_once('.').unwrap_or((&file, ""));
@@ -82,6 +77,17 @@ impl LabSession {
             Some(name) => Ok((name.clone(), folder.join(name))),
             None => unreachable!("there is no end to the names"),
         }
+    }
+
+    /// Refuses one more log where there are as many as a session holds.
+    pub(super) fn has_room(&self) -> Result<()> {
+        if self.saved().logs.len() < MOST_LOGS {
+            return Ok(());
+        }
+        Err(Error::usage(
+            format!("the session holds {MOST_LOGS} logs already"),
+            "remove one, or begin another session",
+        ))
     }
 
     /// Takes a file that was written to the path of [`LabSession::vacant_log`] as a log.
@@ -111,13 +117,15 @@ impl LabSession {
         })
     }
 
-    /// SHA-256 of a log's bytes, in hexadecimal.
-    fn sha256_of(&self, file: &str) -> Result<String> {
-        let path = self.log_path(file);
-        let refused = |why| Error::file(&path, "read", why);
-        let mut log = std::fs::File::open(&path).map_err(refused)?;
+    /// SHA-256 of a log's bytes, in hexadecimal; of a data set's files one after the other.
+    fn sha256_of(&self, log: &str) -> Result<String> {
         let mut hash = Sha256::new();
-        std::io::copy(&mut log, &mut hash).map_err(refused)?;
+        for file in self.files_of_log(log) {
+            let path = self.log_path(&file);
+            let refused = |why| Error::file(&path, "read", why);
+            let mut part = std::fs::File::open(&path).map_err(refused)?;
+            std::io::copy(&mut part, &mut hash).map_err(refused)?;
+        }
         Ok(hex(hash.finalize()))
     }
 
@@ -199,7 +207,7 @@ impl LabSession {
     /// # Errors
     /// A text that is no model.
     pub fn begin_model(&self, title: &str, toml: &str) -> Result<()> {
-        Model::parse(toml, Path::new("model-0.toml"))?;
+        Model::parse(toml, &self.model_path(0))?;
         self.change(|saved| {
             saved.steps = vec![SavedStep::by_hand(title, toml)];
             saved.current = 0;
@@ -240,17 +248,22 @@ impl LabSession {
         Ok(split(named.training, named.held_out))
     }
 
+    /// Where a step's model file is; what it names is looked up beside it.
+    pub fn model_path(&self, step: usize) -> PathBuf {
+        self.folder().join(model_file(step))
+    }
+
     /// The model in force, if there is one.
     ///
     /// # Errors
     /// A text that is no model.
     pub fn model(&self, saved: &SavedSession) -> Result<Option<Model>> {
-        let parse = |toml: &str| Model::parse(toml, &model_file(saved.current));
+        let parse = |toml: &str| Model::parse(toml, &self.model_path(saved.current));
         saved.step().map(|step| parse(&step.toml)).transpose()
     }
 }
 
-/// Name of a step's model file.
+/// Name of a step's model file, in the session's folder.
 pub(super) fn model_file(step: usize) -> PathBuf {
     PathBuf::from(format!("model-{step}.toml"))
 }

@@ -9,7 +9,6 @@ use crate::fitting::{FitProblem, Horizon};
 use crate::model::{JointColumns, MeasuredSignal, Model};
 use crate::output::number::{given, short};
 use serde::Serialize;
-use std::path::Path;
 use std::sync::{Arc, MutexGuard, OnceLock, PoisonError};
 
 /// How many are kept: those of the steps and of some window lengths.
@@ -218,10 +217,9 @@ impl LabSession {
         if let Some(found) = self.kept(&wanted) {
             return Ok(Some(found));
         }
-        let file = model_file(step);
         let made = match self.kept_at_another_horizon(&wanted) {
             Some(known) => known.at(wanted.horizon),
-            None => self.evaluate(saved, &wanted.toml, &file)?,
+            None => self.evaluate(saved, &wanted.toml, step)?,
         };
         let made = Arc::new(made);
         let mut known = self.known();
@@ -256,8 +254,8 @@ impl LabSession {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn evaluate(&self, saved: &SavedSession, toml: &str, file: &Path) -> Result<SessionEvaluation> {
-        let model = Model::parse(toml, file)?;
+    fn evaluate(&self, saved: &SavedSession, toml: &str, step: usize) -> Result<SessionEvaluation> {
+        let model = Model::parse(toml, &self.model_path(step))?;
         let split = match self.take_motions(saved, &model) {
             Some(split) => split,
             None => self.split(saved, &model)?,
@@ -270,7 +268,7 @@ impl LabSession {
         Ok(SessionEvaluation::of(
             run,
             fitted,
-            file.display().to_string(),
+            model_file(step).display().to_string(),
         ))
     }
 }

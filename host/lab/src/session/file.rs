@@ -9,7 +9,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Logs of more bytes than this together are named, not held.
@@ -20,9 +20,13 @@ const MOST_HELD_BYTES: u64 = 128 << 20;
 pub struct SessionFile {
     #[serde(flatten)]
     saved: SavedSession,
-    /// The logs' contents by their names; those it lacks are named alone.
+    /// The logs' contents by their names, `my_set/meta/info.json` of a data set; those it lacks are
+    /// named alone.
     #[serde(default)]
     files: BTreeMap<String, Contents>,
+    /// The robots' files that models in space name.
+    #[serde(default)]
+    robots: BTreeMap<String, String>,
 }
 
 /// What a file holds.
@@ -85,21 +89,50 @@ impl SessionFile {
     }
 }
 
+/// Files of a session, each by its name.
+type Named = BTreeMap<String, Vec<u8>>;
+
+/// The data sets, and the logs that are a file each.
+fn sorted(files: BTreeMap<String, Contents>) -> Result<(BTreeMap<String, Named>, Named)> {
+    let (mut datasets, mut tables) = (BTreeMap::<String, Named>::new(), Named::new());
+    for (file, contents) in files {
+        let bytes = contents.bytes().ok_or_else(|| {
+            let what = format!("what it holds of {file} is no base64");
+            Error::data(Place::file("session.json"), what, "save the session again")
+        })?;
+        let (into, name) = match file.split_once('/') {
+            Some((dataset, part)) => (datasets.entry(dataset.into()).or_default(), part.into()),
+            None => (&mut tables, file),
+        };
+        into.insert(name, bytes);
+    }
+    Ok((datasets, tables))
+}
+
 impl LabSession {
     /// This session as a file; logs that are too large together are named alone.
     pub fn to_file(&self, saved: SavedSession) -> SessionFile {
-        let size = |file: &str| std::fs::metadata(self.log_path(file)).map_or(0, |it| it.len());
-        let total: u64 = saved.logs.iter().map(|log| size(&log.file)).sum();
+        let logs: BTreeSet<String> = saved
+            .logs
+            .iter()
+            .flat_map(|log| self.files_of_log(&log.file))
+            .collect();
+        let size = |file: &String| std::fs::metadata(self.log_path(file)).map_or(0, |it| it.len());
         let mut files = BTreeMap::new();
-        if total <= MOST_HELD_BYTES {
-            for log in &saved.logs {
+        if logs.iter().map(size).sum::<u64>() <= MOST_HELD_BYTES {
+            for file in &logs {
                 // A log that is gone is named alone.
-                if let Ok(bytes) = std::fs::read(self.log_path(&log.file)) {
-                    files.insert(log.file.clone(), Contents::of(bytes));
+                if let Ok(bytes) = std::fs::read(self.log_path(file)) {
+                    files.insert(file.clone(), Contents::of(bytes));
                 }
             }
         }
-        SessionFile { saved, files }
+        let robots = self.robots_of(saved.steps.iter().map(|step| step.toml.as_str()));
+        SessionFile {
+            saved,
+            files,
+            robots,
+        }
     }
 
     /// Fills this session, which is empty, with a file's. A round that it holds stays where it was
@@ -108,19 +141,32 @@ impl LabSession {
     /// # Errors
     /// A model that is none, a log with a name that no log has, the system's refusal.
     pub fn fill_from(&self, file: SessionFile) -> Result<()> {
-        let SessionFile { mut saved, files } = file;
-        for log in &saved.logs {
+        let SessionFile {
+            mut saved,
+            files,
+            robots,
+        } = file;
+        let (datasets, tables) = sorted(files)?;
+        for log in saved
+            .logs
+            .iter()
+            .filter(|log| !datasets.contains_key(&log.file))
+        {
             self.vacant_log(&log.file)?;
         }
-        for step in &saved.steps {
-            Model::parse(&step.toml, Path::new("session.json"))?;
+        for (name, text) in &robots {
+            self.keep_robot(name, text)?;
+        }
+        for step in &mut saved.steps {
+            step.toml = self.with_robot(Path::new("session.json"), &step.toml, None)?;
+            Model::parse(&step.toml, &self.model_path(0))?;
         }
         let mut names = BTreeMap::new();
-        for (file, contents) in files {
-            let bytes = contents.bytes().ok_or_else(|| {
-                let what = format!("what it holds of {file} is no base64");
-                Error::data(Place::file("session.json"), what, "save the session again")
-            })?;
+        for (name, parts) in datasets {
+            let kept = self.write_dataset(&name, &parts)?;
+            names.insert(name, kept);
+        }
+        for (file, bytes) in tables {
             let kept = self.keep_log(&file, &bytes)?;
             names.insert(file, kept);
         }

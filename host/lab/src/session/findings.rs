@@ -3,7 +3,6 @@
 
 use super::LabSession;
 use super::aside::aside;
-use super::data::model_file;
 use super::saved::{SavedLog, SavedSession};
 use crate::diagnose::conventions::{self, ModelFile};
 use crate::error::Result;
@@ -42,7 +41,7 @@ impl LabSession {
             return Ok(found.clone());
         }
         let file = ModelFile {
-            path: &model_file(saved.current),
+            path: &self.model_path(saved.current),
             text: &step.toml,
         };
         let logs = self.log_set(saved).all();

@@ -1,10 +1,11 @@
 //! What the command line gives a new session.
 
 use super::LabSession;
-use super::bring::{is_model, model_step};
+use super::bring::{check_model, is_model};
 use super::saved::SavedStep;
 use crate::error::{Error, Result};
-use crate::log::{LogFormat, LogRequest};
+use crate::log::lerobot::dataset_files;
+use crate::log::{LogFormat, LogRequest, unfolded};
 use std::path::{Path, PathBuf};
 
 fn text(file: &Path) -> Result<String> {
@@ -28,7 +29,7 @@ impl ProjectFiles {
     pub fn of(files: &[LogRequest]) -> Result<ProjectFiles> {
         let mut given = ProjectFiles::default();
         for (index, file) in files.iter().enumerate() {
-            let unknown = !LogFormat::is_log(&file.path);
+            let unknown = !LogFormat::is_log(&file.path) && !file.path.is_dir();
             if !(is_model(&file.path) || index == 0 && unknown) {
                 given.logs.push(file.clone());
             } else if let Some(first) = given.model.replace(file.path.clone()) {
@@ -47,7 +48,7 @@ impl ProjectFiles {
     /// Files that cannot be read, a model that is none.
     pub fn check(&self) -> Result<()> {
         if let Some(file) = &self.model {
-            model_step(file, &text(file)?)?;
+            check_model(file, &text(file)?)?;
         }
         for log in &self.logs {
             std::fs::File::open(&log.path).map_err(|why| Error::file(&log.path, "read", why))?;
@@ -62,14 +63,27 @@ impl LabSession {
     /// # Errors
     /// Files that cannot be read or written.
     pub fn bring(&self, given: &ProjectFiles) -> Result<()> {
+        for log in &given.logs {
+            match dataset_files(&log.path)? {
+                Some(files) => self.keep_dataset(&log.path, &files)?,
+                None => self.bring_logs(log)?,
+            }
+        }
+        // A robot's file takes the columns of the first log.
         if let Some(file) = &given.model {
+            let beside = file.parent().unwrap_or(Path::new(""));
             let step = SavedStep {
                 title: "as given".into(),
-                ..model_step(file, &text(file)?)?
+                ..self.model_step(file, &text(file)?, Some(beside))?
             };
             self.push_step(step)?;
         }
-        for log in &given.logs {
+        Ok(())
+    }
+
+    /// Copies a log into the session, or those of a folder.
+    fn bring_logs(&self, request: &LogRequest) -> Result<()> {
+        for log in unfolded(std::slice::from_ref(request))? {
             let bytes =
                 std::fs::read(&log.path).map_err(|why| Error::file(&log.path, "read", why))?;
             let name = LogRequest::whole(&log.path).name();

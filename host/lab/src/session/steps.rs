@@ -1,7 +1,6 @@
 //! Models one after the other: undone, done again, noted, written as files.
 
 use super::LabSession;
-use super::data::model_file;
 use super::saved::SavedStep;
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -13,7 +12,7 @@ impl LabSession {
     /// # Errors
     /// A text that is no model, the system's refusal.
     pub fn push_step(&self, step: SavedStep) -> Result<()> {
-        Model::parse(&step.toml, &model_file(0))?;
+        Model::parse(&step.toml, &self.model_path(0))?;
         self.change(|saved| {
             // What was undone is gone; the first step takes nothing away.
             saved
@@ -56,7 +55,7 @@ impl LabSession {
     /// The models as files beside the logs, so that the commands shown can be typed there.
     pub(super) fn write_models(&self) -> Result<()> {
         for (index, step) in self.saved().steps.iter().enumerate() {
-            write_new(&self.folder().join(model_file(index)), &step.toml, true)?;
+            write_new(&self.model_path(index), &step.toml, true)?;
         }
         Ok(())
     }

@@ -2,7 +2,6 @@
 
 use super::LabSession;
 use super::card::SavedDiagnosis;
-use super::data::model_file;
 use super::evaluation::ShownUnit;
 use super::job::JobReport;
 use super::kept::DiagnosedFiles;
@@ -44,7 +43,7 @@ impl LabSession {
             stop: report.stop_switch().clone(),
             ..DiagnoseOptions::default()
         };
-        let (path, logs) = (model_file(view.current), self.log_set(view));
+        let (path, logs) = (self.model_path(view.current), self.log_set(view));
         let file = ModelFile {
             path: &path,
             text: self.toml(view)?,
@@ -95,7 +94,7 @@ impl LabSession {
         let view = self.view_of(begun.clone());
         let model = self.model_at(&view)?;
         let candidates = candidates_named(names, &model)?;
-        let (text, file) = (self.toml(&begun)?, model_file(begun.current));
+        let (text, file) = (self.toml(&begun)?, self.model_path(begun.current));
         let split = self.log_set(&view).read(&model.log)?;
         let horizon = view.horizon();
         let added = add_effects(
@@ -138,7 +137,7 @@ impl LabSession {
         let begun = self.saved();
         let view = self.view_of(begun.clone());
         self.model_at(&view)?;
-        let file = model_file(begun.current);
+        let file = self.model_path(begun.current);
         let text = with_bounds(self.toml(&begun)?, &file, bounds)?;
         let mut model = Model::parse(&text, &file)?;
         let named = named(values, &model);

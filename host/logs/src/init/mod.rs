@@ -25,7 +25,7 @@ mod write;
 pub use log_guess::{ColumnGuess, JointGuess, LogGuess};
 pub use name::{Role, name_guess};
 pub use origin::{DraftValue, Estimate, Origin};
-pub use robot::{LerobotUnit, RobotLog, robot_log};
+pub use robot::{LerobotUnit, RobotDraft, RobotRequest};
 
 use crate::RawLog;
 use crate::error::{Error, Result};

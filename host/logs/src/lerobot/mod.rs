@@ -42,6 +42,36 @@ pub(crate) struct LerobotDataset {
     info: DatasetInfo,
 }
 
+/// The files of a data set that are read, relative to its folder: what it says of itself, lists of
+/// episodes, and these; none of a folder that is no data set. Videos are not among them.
+///
+/// # Errors
+/// As for reading it: a description or files that are not as LeRobot writes them.
+pub fn dataset_files(folder: &Path) -> Result<Option<Vec<PathBuf>>> {
+    if !LerobotDataset::is_one(folder) {
+        return Ok(None);
+    }
+    let dataset = LerobotDataset::open(folder)?;
+    let mut files = vec![PathBuf::from(INFO)];
+    if dataset.info.is_v3 {
+        let chunk = dataset.info.chunk_size()?;
+        let lists = (0..=MOST_FILES).map(|index| PathBuf::from(list_file(index, chunk)));
+        files.extend(lists.take_while(|file| folder.join(file).is_file()));
+    }
+    let data = dataset.files()?;
+    let data = data
+        .iter()
+        .filter_map(|file| file.strip_prefix(folder).ok());
+    files.extend(data.map(Path::to_path_buf));
+    Ok(Some(files))
+}
+
+/// One of the files that list a data set's episodes, relative to its folder.
+fn list_file(index: u64, chunk: u64) -> String {
+    let (chunk, file) = (index / chunk, index % chunk);
+    format!("meta/episodes/chunk-{chunk:03}/file-{file:03}.parquet")
+}
+
 impl LerobotDataset {
     /// Whether a folder is a data set of LeRobot.
     pub fn is_one(folder: &Path) -> bool {
@@ -96,12 +126,7 @@ impl LerobotDataset {
         let chunk = self.info.chunk_size()?;
         let (mut found, mut episodes) = (BTreeSet::new(), 0);
         for index in 0..=MOST_FILES {
-            let name = format!(
-                "meta/episodes/chunk-{:03}/file-{:03}.parquet",
-                index / chunk,
-                index % chunk
-            );
-            let file = self.folder.join(name);
+            let file = self.folder.join(list_file(index, chunk));
             if !file.is_file() {
                 if index == 0 {
                     return Err(self.info.missing(&file));

@@ -230,6 +230,11 @@ def init(
     angles: str | None = None,
     length_m: Sequence[float] | None = None,
     mass_kg: Sequence[float] | None = None,
+    robot: _File | None = None,
+    lock: dict[str, float] | None = None,
+    names: dict[str, str] | None = None,
+    calibration: _File | None = None,
+    unit: str | None = None,
 ) -> Draft: ...
 def log_check(model: Model, logs: _Logs) -> LogCheck: ...
 def drift(

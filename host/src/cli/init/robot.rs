@@ -5,9 +5,9 @@ use crate::cli::import::{check_in_space, locked, seen_from, tell};
 use crate::cli::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::log::RawLog;
-use handstand::log::init::{LerobotUnit, RobotLog, robot_log};
+use handstand::log::init::{LerobotUnit, RobotDraft, RobotRequest};
 use handstand::log::lerobot::Calibration;
-use handstand::model::import::{Locked, SpacePlan, import_for_log, moving_joints};
+use handstand::model::import::{Locked, SpacePlan};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -52,34 +52,32 @@ pub(super) fn run(
 ) -> Result<ExitStatus> {
     let own = &args.robot;
     let text = input::text(robot)?;
-    let joints = moving_joints(&text, robot, &own.lock)?;
     let calibration = own
         .calibration
         .as_deref()
         .map(Calibration::read)
         .transpose()?;
-    let ask = RobotLog {
-        joints: &joints,
-        mapped: &own.map,
-        calibration: calibration.as_ref(),
-        unit: own.unit.as_deref().map(|unit| match unit {
-            "rad" => LerobotUnit::Rad,
-            "deg" => LerobotUnit::Deg,
-            _ => LerobotUnit::Percent,
-        }),
-        drive: args.drive.as_deref(),
-    };
-    let (mut plan, guesses) = robot_log(log, &args.log.name(), &ask)?;
-    let wanted = args.drive.as_deref().filter(|drive| *drive != "passive");
-    if let Some(drive) = wanted.filter(|drive| plan.joints.iter().all(|own| own.drive != *drive)) {
-        return Err(super::no_input(args, drive, log));
-    }
     let space = SpacePlan {
         robot: seen_from(args.output.as_deref(), robot),
         locked: own.lock.clone(),
     };
-    plan.name.clone_from(&args.name);
-    let imported = import_for_log(&text, robot, &space, &plan)?;
+    let request = RobotRequest {
+        text: &text,
+        file: robot,
+        space: &space,
+        name: args.name.as_deref(),
+        mapped: &own.map,
+        calibration: calibration.as_ref(),
+        unit: own.unit.as_deref().and_then(LerobotUnit::named),
+        drive: args.drive.as_deref(),
+    };
+    let draft = RobotDraft::of(log, &args.log.name(), &request)?;
+    if let Some(drive) = args.drive.as_deref().filter(|own| !draft.has_input_of(own)) {
+        return Err(super::no_input(args, drive, log));
+    }
+    let RobotDraft {
+        imported, guesses, ..
+    } = draft;
     super::tell(&guesses, console);
     tell(&imported, console);
     check_in_space(&imported, args.output.as_deref())?;

@@ -4,7 +4,8 @@ mod dataset;
 mod hostile;
 
 use crate::common::{Bench, Ran};
-use dataset::{Dataset, EPISODES, JOINTS, ROBOT, Written, calibration, simulated};
+use dataset::{Dataset, JOINTS, calibration, simulated};
+pub use dataset::{EPISODES, ROBOT, Written};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -13,7 +14,7 @@ use std::path::Path;
 const RIGHT_MRAD: f64 = 3.0;
 
 /// A folder with `robot.urdf` and a data set `d`.
-fn bench(version: &'static str, names: Value, unit: Written) -> Bench {
+pub fn bench(version: &'static str, names: Value, unit: Written) -> Bench {
     let bench = Bench::new();
     let angles = simulated(&bench.path(""));
     Dataset::of(version, names, &angles, unit).write(&bench.path("d"));
@@ -23,7 +24,7 @@ fn bench(version: &'static str, names: Value, unit: Written) -> Bench {
 }
 
 /// Names as LeRobot writes them since v3.0, in the robot's order.
-fn names() -> Value {
+pub fn names() -> Value {
     json!(JOINTS.map(|joint| format!("{joint}.pos")))
 }
 

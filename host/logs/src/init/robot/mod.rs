@@ -1,9 +1,11 @@
 //! A log of a robot whose URDF or MJCF file is there: which columns are of which joint, in which
 //! unit.
 
+mod draft;
 mod matching;
 mod units;
 
+pub use draft::{RobotDraft, RobotRequest};
 pub use units::LerobotUnit;
 
 use super::columns::log_guess;
@@ -24,7 +26,7 @@ const ARMATURE_KG_M2: f64 = 0.01;
 
 /// What is known of a log beside itself.
 #[derive(Debug, Clone, Copy)]
-pub struct RobotLog<'a> {
+struct RobotLog<'a> {
     /// The robot's joints that move.
     pub joints: &'a [MovingJoint],
     /// Joints of the robot with what the log calls them, where the names do not tell.
@@ -47,7 +49,7 @@ pub struct RobotLog<'a> {
 /// # Errors
 /// As [`super::Draft::of`]; joints that no name means, or several; a data set without names; a
 /// calibration of another robot, and values that its unit does not have.
-pub fn robot_log(log: &RawLog, file: &str, ask: &RobotLog) -> Result<(LogPlan, Vec<Guess>)> {
+fn robot_log(log: &RawLog, file: &str, ask: &RobotLog) -> Result<(LogPlan, Vec<Guess>)> {
     let mut said = Vec::new();
     let guess = log_guess(log, file, ask.drive, &mut said)?;
     let is_lerobot = is_lerobot(&guess);

@@ -27,6 +27,16 @@ pub enum LerobotUnit {
 }
 
 impl LerobotUnit {
+    /// The unit of a name: `rad`, `deg`, `percent`.
+    pub fn named(name: &str) -> Option<LerobotUnit> {
+        match name {
+            "rad" => Some(LerobotUnit::Rad),
+            "deg" => Some(LerobotUnit::Deg),
+            "percent" => Some(LerobotUnit::Percent),
+            _ => None,
+        }
+    }
+
     fn words(self) -> &'static str {
         match self {
             LerobotUnit::Rad => "in rad",

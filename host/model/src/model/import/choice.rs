@@ -83,6 +83,18 @@ fn sliding(tree: &RobotTree, file: &str, left_out: &mut Vec<Remark>) -> Result<V
     Ok(vec![first])
 }
 
+/// All joints of a robot, base to tip, where each turns or slides alone behind the one before it and
+/// follows no other; none of a tree.
+pub(super) fn in_one_row(tree: &RobotTree) -> Option<Vec<usize>> {
+    let carrying = |&body: &usize| !tree.bodies[body].joints.is_empty();
+    let all: Vec<usize> = (0..tree.bodies.len()).filter(carrying).collect();
+    let follows = tree.left_out.iter().any(|part| part.part == "mimic");
+    let alone = |&body: &usize| hinged(tree, body) || moves(tree, body, JointMotion::Slide);
+    let behind = |pair: &[usize]| ancestors(tree, pair[1]).contains(&pair[0]);
+    (!all.is_empty() && !follows && all.iter().all(alone) && all.windows(2).all(behind))
+        .then_some(all)
+}
+
 /// A body and those that carry it, the base first.
 pub(super) fn ancestors(tree: &RobotTree, body: usize) -> Vec<usize> {
     let mut chain: Vec<usize> =

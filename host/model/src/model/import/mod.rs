@@ -1,7 +1,8 @@
 //! Models out of other simulators' files: URDF and MJCF.
 //!
-//! A robot in space becomes the planar chain of some of its joints: [`import`]. What a model does
-//! not have is listed with the reason, never left out silently.
+//! A robot becomes the planar chain of some of its joints, or a robot in space ([`import`]); whole,
+//! it becomes what its joints make ([`import_whole`]). What a model does not have is listed with the
+//! reason, never left out silently.
 
 mod choice;
 mod frame;
@@ -26,7 +27,8 @@ pub use tree::Remark;
 use crate::dynamics::SpatialTree;
 use crate::error::{Error, Result};
 use crate::model::robot::fingerprint;
-use planar::planar_chain;
+use groups::ready_to_paste;
+use planar::{PlanarChain, planar_chain, whole_chain};
 use prefixes::declared;
 use space::{InSpace, in_space};
 use std::path::Path;
@@ -66,6 +68,8 @@ pub struct Imported {
     pub toml: String,
     /// The joints, from the base to the tip.
     pub joints: Vec<String>,
+    /// Whether it is a robot in space, and not a planar chain.
+    pub in_space: bool,
     /// What of the file the model does not hold.
     pub left_out: Vec<Remark>,
     /// What the model holds, and what is to be known of it: rounded axes, impossible moments.
@@ -93,7 +97,44 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
         };
         return Ok(parts.in_space(found, space, None));
     }
-    let mut chain = planar_chain(&tree, &plan.joints, &name)?;
+    let chain = planar_chain(&tree, &plan.joints, &name)?;
+    in_plane(&tree, chain, format, path)
+}
+
+/// The model of a whole robot: the planar chain of its joints where they make one and none is
+/// held, else the robot in space; `path` only names the file. Joints that the file does not drive
+/// are driven by a torque if `driven`.
+///
+/// # Errors
+/// As [`import`], but for joints that make no planar chain.
+pub fn import_whole(text: &str, path: &Path, driven: bool, space: &SpacePlan) -> Result<Imported> {
+    let (format, tree) = robot(text, path, driven)?;
+    let name = path.display().to_string();
+    if space.locked.is_empty()
+        && let Some(chain) = whole_chain(&tree, &name)
+    {
+        return in_plane(&tree, chain, format, path);
+    }
+    let mut found = in_space(&tree, &space.locked, &name)?;
+    if let Some(chains) = ready_to_paste(&tree, &name) {
+        let why = format!("in space, with all that moves; {chains} takes a planar chain");
+        found.notes.insert(0, Remark::new("robot", None, why));
+    }
+    let parts = ImportedParts {
+        format,
+        text,
+        tree: &tree,
+    };
+    Ok(parts.in_space(found, space, None))
+}
+
+/// The model of a planar chain.
+fn in_plane(
+    tree: &RobotTree,
+    mut chain: PlanarChain,
+    format: &'static str,
+    path: &Path,
+) -> Result<Imported> {
     let mut left_out = tree.left_out.clone();
     left_out.extend(chain.left_out.iter().cloned());
     let toml = write::toml(&tree.name, &mut chain, format, path, &mut left_out)?;
@@ -102,6 +143,7 @@ pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
         format,
         toml,
         joints: joints.collect(),
+        in_space: false,
         left_out,
         notes: chain.notes,
     })
@@ -139,6 +181,7 @@ impl ImportedParts<'_> {
             format: self.format,
             toml,
             joints: joints.collect(),
+            in_space: true,
             left_out: found.left_out,
             notes: found.notes,
         }

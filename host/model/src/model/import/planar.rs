@@ -1,7 +1,7 @@
 //! A planar chain out of a robot in space: the joints chosen, the rest held, all seen along the
 //! joints' common axis.
 
-use super::choice::{ancestors, longest, named};
+use super::choice::{ancestors, in_one_row, longest, named};
 use super::frame::{Frame, NotPlanar, wrapped};
 use super::groups::ready_to_paste;
 use super::tree::{Fault, FaultyPart, Inertial, JointMotion, Remark, RobotTree, TreeJoint};
@@ -59,6 +59,11 @@ pub(super) fn planar_chain(tree: &RobotTree, names: &[String], file: &str) -> Re
     Ok(PlanarChain { left_out, ..chain })
 }
 
+/// The chain of all joints of a robot, where they make one.
+pub(super) fn whole_chain(tree: &RobotTree, file: &str) -> Option<PlanarChain> {
+    chain_of(tree, &in_one_row(tree)?, file).ok()
+}
+
 /// Why some joints make no chain.
 pub(super) enum Refusal {
     /// What is wrong, and whether other joints may do.
@@ -87,8 +92,7 @@ impl Refusal {
 
 impl From<NotPlanar> for Refusal {
     fn from(NotPlanar(what): NotPlanar) -> Self {
-        let remedy =
-            "--space takes the whole robot; a planar chain is of joints about parallel axes";
+        let remedy = "without --joints the whole robot is taken; a planar chain is of joints about parallel axes";
         Refusal::Joints(None, what, remedy)
     }
 }

@@ -4,6 +4,7 @@
 use super::{imported, refused};
 use crate::Model;
 use crate::model::import::{ImportPlan, Imported, import};
+use crate::model::import::{SpacePlan, import_whole};
 use std::path::Path;
 
 /// Two links, the attributes of the second joint's body and joint, and what else is in the file.
@@ -337,4 +338,42 @@ fn only_the_namespace_of_xacro_is_xacro() {
     assert!(refused(&inner, &["lift", "elbow"]).contains("<xacro:limits>"));
     let property = ARM.replace("xyz=\"0 0 -0.3\"", "xyz=\"${length} 0 0\"");
     assert!(refused(&property, &["lift", "elbow"]).contains("property of xacro"));
+}
+
+fn whole(text: &str, locked: &[(&str, f64)]) -> Imported {
+    let locked = locked.iter().map(|(name, at)| (name.to_string(), *at));
+    let space = SpacePlan {
+        robot: "arm.urdf".into(),
+        locked: locked.collect(),
+    };
+    import_whole(text, Path::new("arm.urdf"), false, &space).unwrap()
+}
+
+#[test]
+fn a_whole_robot_is_a_planar_chain_where_its_joints_make_one() {
+    let found = whole(ARM, &[]);
+    assert!(found.in_space, "{}", found.toml);
+    assert_eq!(found.joints, ["pan", "lift", "elbow"]);
+    let note = found.notes.iter().find(|note| note.part == "robot");
+    let why = &note.unwrap().why;
+    assert!(
+        why.contains("--joints lift elbow takes a planar chain"),
+        "{why}"
+    );
+    let planar = ARM.replace("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 1 0\"/>");
+    let chain = whole(&planar, &[]);
+    assert!(!chain.in_space, "{}", chain.toml);
+    let plan = ImportPlan {
+        joints: ["pan", "lift", "elbow"].map(String::from).to_vec(),
+        ..ImportPlan::default()
+    };
+    let named = import(&planar, Path::new("arm.urdf"), &plan).unwrap();
+    assert_eq!(chain, named);
+    // What is held, follows another, or branches off is known in space alone.
+    assert!(whole(&planar, &[("elbow", 0.3)]).in_space);
+    let lift = "<joint name=\"lift\" type=\"revolute\">";
+    let follows = planar.replace(lift, &format!("{lift}<mimic joint=\"pan\"/>"));
+    assert_eq!(whole(&follows, &[]).joints, ["pan", "elbow"]);
+    let branch = planar.replace("<parent link=\"l\"/>", "<parent link=\"p\"/>");
+    assert!(whole(&branch, &[]).in_space);
 }

@@ -1,0 +1,103 @@
+//! The robot's file of a model in space: a copy of it lies in the session's folder, so that the
+//! session goes on where the robot's own file is moved or edited, and can be taken along.
+
+use super::LabSession;
+use super::bring::is_robot;
+use crate::error::{Error, Result};
+use crate::model::edit::{robot_file, set_robot_file};
+use crate::output::write_new;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The last part of a name of a robot's file, in letters that no file system can misread; a name
+/// that ends as no robot's is given an ending.
+fn plain_robot(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let plain = |c: char| match c {
+        c if c.is_ascii_alphanumeric() || "._-".contains(c) => c,
+        _ => '_',
+    };
+    let plain: String = last.chars().map(plain).collect();
+    let plain = plain.trim_start_matches('.');
+    if is_robot(Path::new(plain)) {
+        plain.to_string()
+    } else {
+        format!("{plain}.xml")
+    }
+}
+
+impl LabSession {
+    /// Keeps a copy of a robot's file; the name it got. Another robot of the same name stays.
+    ///
+    /// # Errors
+    /// The system's refusal.
+    pub(super) fn keep_robot(&self, name: &str, text: &str) -> Result<String> {
+        let plain = plain_robot(name);
+        let (stem, ending) = plain.rsplit_once('.').unwrap_or((&plain, "xml"));
+        let numbered = (2..).map(|count| format!("{stem}-{count}.{ending}"));
+        for file in std::iter::once(plain.clone()).chain(numbered) {
+            let path = self.folder().join(&file);
+            match std::fs::read_to_string(&path) {
+                Ok(known) if known == text => return Ok(file),
+                Ok(_) => {}
+                Err(why) if why.kind() == std::io::ErrorKind::NotFound => {
+                    write_new(&path, text, false)?;
+                    return Ok(file);
+                }
+                Err(why) => return Err(Error::file(&path, "read", why)),
+            }
+        }
+        unreachable!("there is no end to the names")
+    }
+
+    /// A model's text whose robot is a copy in this session; `beside` is the folder of the model's
+    /// file. Without it, as of a model that a browser sent, the robot has to be here already.
+    ///
+    /// # Errors
+    /// A robot's file that is not there.
+    pub(super) fn with_robot(
+        &self,
+        name: &Path,
+        text: &str,
+        beside: Option<&Path>,
+    ) -> Result<String> {
+        let Some(robot) = robot_file(text) else {
+            return Ok(text.to_string());
+        };
+        let kept = match beside {
+            Some(folder) => {
+                let file = folder.join(&robot);
+                let robot_text = std::fs::read_to_string(&file)
+                    .map_err(|why| Error::file(&file, "read", why))?;
+                self.keep_robot(&robot, &robot_text)?
+            }
+            None => {
+                let kept = plain_robot(&robot);
+                if !self.folder().join(&kept).is_file() {
+                    return Err(Error::usage(
+                        format!(
+                            "{}: its robot {robot} is not in this session",
+                            name.display()
+                        ),
+                        format!("bring {kept} first, or both together"),
+                    ));
+                }
+                kept
+            }
+        };
+        set_robot_file(text, name, &kept)
+    }
+
+    /// The robots' files that the models of these texts name, by their names.
+    pub(super) fn robots_of<'a>(
+        &self,
+        tomls: impl Iterator<Item = &'a str>,
+    ) -> BTreeMap<String, String> {
+        let names = tomls.filter_map(robot_file);
+        let texts = names.filter_map(|name| {
+            let text = std::fs::read_to_string(self.folder().join(&name)).ok()?;
+            Some((name, text))
+        });
+        texts.collect()
+    }
+}
