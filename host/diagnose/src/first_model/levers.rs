@@ -50,7 +50,9 @@ impl Settling<'_> {
         let (model, free) = (&found.model, &found.free[..]);
         let crowded = crowded(model, free)
             .and_then(|link| with_links(model, |links| self.make_room(links, link)));
-        let misplaced = misplaced(model, free).filter(|_| !self.mass_is_known);
+        let guess_m = |link: usize| self.drafted.links[link].com_m;
+        let misplaced = misplaced(model, free)
+            .filter(|(link, com_m)| !self.mass_is_known && is_near(*com_m, guess_m(*link)));
         let misplaced = misplaced
             .filter_map(|(link, com_m)| with_links(model, |links| set_lever(links, link, com_m)));
         let too_long = too_long(model, free).and_then(|link| {
@@ -98,6 +100,12 @@ impl Settling<'_> {
             _ => None,
         })
     }
+}
+
+/// Whether a lever is within the bounds of its guess: what swings like a link that was left no mass
+/// is as long as one likes.
+fn is_near(com_m: f64, guess_m: f64) -> bool {
+    (1.0 / ANY_LEVER..=ANY_LEVER).contains(&(com_m / guess_m.abs()))
 }
 
 fn with_links(model: &Model, change: impl FnOnce(&mut [Link]) -> bool) -> Option<Model> {
@@ -256,6 +264,21 @@ mod tests {
         assert_eq!(crowded(&model, &[inertia]), Some(0));
         model.links[0].com_m = -0.08;
         assert_eq!(crowded(&model, &[inertia]), None);
+    }
+
+    #[test]
+    fn a_link_without_mass_gets_no_lever_of_miles() {
+        let inertia = ParameterPath::Link {
+            index: 1,
+            field: LinkField::Inertia,
+        };
+        let mut model = hanging();
+        model.links[1].mass_kg = 1e-12;
+        let found: Vec<(usize, f64)> = misplaced(&model, &[inertia]).collect();
+        assert!(found[0].1 > 1e9, "{found:?}");
+        assert!(!is_near(found[0].1, 0.125));
+        assert!(!is_near(f64::NAN, 0.125));
+        assert!(is_near(0.28, -0.125));
     }
 
     #[test]

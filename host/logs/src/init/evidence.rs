@@ -144,14 +144,16 @@ impl Evidence {
                 format!("an even rod of {LENGTH_M} m and {mass_kg} kg"),
                 "gravity's torque; its length is a guess",
             )),
+            None if columns.joints.len() == 1 => guesses.push(Guess::new(
+                "link",
+                format!("an even rod of {LENGTH_M} m and {MASS_KG} kg"),
+                "a guess: measure it, or let `handstand fit` estimate it",
+            )),
             None => guesses.push(Guess::new(
-                if columns.joints.len() == 1 {
-                    "link"
-                } else {
-                    "links"
-                },
-                format!("even rods of {LENGTH_M} m and {MASS_KG} kg"),
-                "a guess: measure them, or let `handstand fit` estimate them",
+                "links",
+                format!("even rods of {LENGTH_M} m and {MASS_KG} kg, in a plane"),
+                "a guess: measure them, or let `handstand fit` estimate them; --robot takes those \
+                 of a robot's URDF or MJCF file",
             )),
         }
         if columns
