@@ -4,6 +4,7 @@ mod bring;
 mod events;
 mod gains;
 mod http;
+mod in_space;
 mod kept;
 mod live;
 mod made;
