@@ -3,7 +3,7 @@
 use super::reply::{Answer, LabError, typed};
 use crate::plot;
 use crate::report::page::STYLE as PAGE;
-use crate::report::playback::page::{SCRIPT as VIEW, STYLE as VIEW_STYLE};
+use crate::report::playback::page::{PLANAR, SPACE, STYLE as VIEW_STYLE};
 use axum::extract::Path;
 
 const FRAME: &str = include_str!("assets/lab.css");
@@ -26,7 +26,8 @@ pub(super) async fn asset(Path(name): Path<String>) -> Answer {
     let (kind, text) = match name.as_str() {
         "lab.css" => (style, [plot::STYLE, PAGE, FRAME].concat()),
         "view.css" => (style, [plot::STYLE, VIEW_STYLE].concat()),
-        "view.js" => (script, VIEW.into()),
+        "view.js" => (script, PLANAR.into()),
+        "view-space.js" => (script, SPACE.into()),
         "chart.js" => (script, CHART.into()),
         "curves.js" => (script, CURVES.into()),
         "paint.js" => (script, PAINT.into()),

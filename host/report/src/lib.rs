@@ -56,7 +56,7 @@ pub use verification::verification_text;
 use handstand_control::{study, synth};
 use handstand_diagnose::{diagnose, experiment};
 use handstand_logs as log;
-use handstand_model::{effects, error, model, motion, output};
+use handstand_model::{dynamics, effects, error, model, motion, output};
 
 use handstand_sim::{compare, fitting};
 

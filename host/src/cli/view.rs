@@ -9,16 +9,21 @@
 //! $ handstand view handstand.toml run.csv --model handstand.toml -o run.html
 //! ```
 //!
+//! A robot in space is drawn by the shapes and STL meshes that its file names, where they lie, and
+//! by capsules else; the view is turned by mouse, touch and keys.
+//!
 //! Models run as in `compare`: starting afresh every `--horizon` seconds. An address ending in
 //! `#t=1.5` opens the page at 1.5 s, `#play` playing, `#motion=2` at the third motion.
 
 use super::{Console, ExitStatus, input};
 use handstand::compare::compare;
 use handstand::log::{LogRequest, read};
+use handstand::model::Model;
+use handstand::model::shapes::{NotDrawn, RobotShapes};
 use handstand::report::file_names;
 use handstand::report::playback::{Scene, html};
 use handstand::{Error, Result, output};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Animate a motion on an HTML page.
 #[derive(Debug, clap::Args)]
@@ -48,8 +53,9 @@ pub struct ViewArgs {
 pub fn run(args: &ViewArgs, console: &Console) -> Result<ExitStatus> {
     output::vacant(&args.output, args.force)?;
     let model = input::model(&args.model)?;
-    model.hinges_only("a page draws links that turn")?;
-    model.planar_only("a page draws links in their plane")?;
+    if !model.is_in_space() {
+        model.hinges_only("a page draws links that turn")?;
+    }
     if let Some(sentence) = model.log.unobserved().into_iter().next() {
         return Err(Error::usage(
             sentence,
@@ -58,20 +64,10 @@ pub fn run(args: &ViewArgs, console: &Console) -> Result<ExitStatus> {
     }
     let motions = input::motions(&args.logs, &model.log, console)?;
     let mut scene = Scene::measured(&model, &motions);
+    let not_drawn = dress(&mut scene, &model, &args.model, console)?;
     for (file, name) in args.others.iter().zip(file_names(&args.others)) {
         let other = input::model(file)?;
-        if other.link_count() != model.link_count() {
-            return Err(Error::usage(
-                format!(
-                    "{} has {} links and {} has {}",
-                    file.display(),
-                    other.link_count(),
-                    args.model.display(),
-                    model.link_count()
-                ),
-                "draw models of one chain over each other",
-            ));
-        }
+        alike([&args.model, file], [&model, &other])?;
         let motions = read(&args.logs, &other.log)?;
         let horizon = args.run.of(&other, &motions)?;
         scene.add_model(&other, &compare(&other, &name, &motions, horizon));
@@ -84,7 +80,42 @@ pub fn run(args: &ViewArgs, console: &Console) -> Result<ExitStatus> {
         console.data(&serde_json::json!({
             "page": args.output.to_string_lossy(),
             "motions": scene.motions.iter().map(|m| &m.name).collect::<Vec<_>>(),
+            "not_drawn": not_drawn,
         }))?;
     }
     Ok(ExitStatus::Done)
+}
+
+/// Draws a robot in space by the shapes of its file; what of them is not drawn.
+fn dress(
+    scene: &mut Scene,
+    model: &Model,
+    file: &Path,
+    console: &Console,
+) -> Result<Vec<NotDrawn>> {
+    let Some(robot) = &model.robot else {
+        return Ok(Vec::new());
+    };
+    let shapes = RobotShapes::read(robot, file)?;
+    scene.dress(model, &shapes);
+    if let Some(line) = shapes.not_drawn_text() {
+        console.say(&line);
+    }
+    Ok(shapes.not_drawn)
+}
+
+/// Refuses models that are not of one chain or robot; `files` are theirs.
+fn alike(files: [&Path; 2], models: [&Model; 2]) -> Result<()> {
+    let what = models.map(|model| match &model.robot {
+        None => format!("{} links", model.link_count()),
+        Some(robot) => format!("the joints {}", robot.joints.join(", ")),
+    });
+    if what[0] == what[1] {
+        return Ok(());
+    }
+    let [first, other] = files.map(Path::display);
+    Err(Error::usage(
+        format!("{other} has {} and {first} has {}", what[1], what[0]),
+        "draw models of one chain over each other",
+    ))
 }

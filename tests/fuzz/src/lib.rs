@@ -39,6 +39,7 @@ pub const TARGETS: &[Target] = &[
     target("log_mcap", targets::files::log_mcap),
     target("log_parquet", targets::files::log_parquet),
     target("log_rosbag", targets::files::log_rosbag),
+    target("mesh", targets::model::mesh),
     target("message", targets::wire::message),
     target("model", targets::model::parse),
     target("model_edit", targets::model::edit),

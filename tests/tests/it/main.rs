@@ -20,6 +20,7 @@ mod space;
 mod space_export;
 mod space_names;
 mod space_search;
+mod space_view;
 mod spoiled;
 mod verdicts;
 

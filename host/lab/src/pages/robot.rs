@@ -2,6 +2,7 @@
 
 use super::{evaluated, frame, robot_live};
 use crate::live::LiveRobot;
+use crate::model::shapes::RobotShapes;
 use crate::reply::LabError;
 use crate::report::playback::{Scene, stage};
 use crate::session::LabSession;
@@ -45,10 +46,20 @@ pub fn stage_page(session: &LabSession) -> Result<Markup, LabError> {
     let evaluation = session.evaluation(&saved, saved.current)?;
     let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
     let run = &evaluation.run;
-    (run.model)
-        .planar_only("links are drawn in their plane")
-        .map_err(|why| LabError::Conflict(why.to_string()))?;
     let mut scene = Scene::measured(&run.model, &run.data.motions);
+    let mut not_drawn = None;
+    if let Some(robot) = &run.model.robot {
+        let (robot, beside) = session.robot_with_meshes(&saved, robot);
+        let shapes = RobotShapes::read(&robot, &beside)
+            .map_err(|why| LabError::Conflict(why.to_string()))?;
+        scene.dress(&run.model, &shapes);
+        not_drawn = shapes.not_drawn_text();
+    }
+    let script = if scene.tree.is_some() {
+        "/assets/view-space.js"
+    } else {
+        "/assets/view.js"
+    };
     let mut comparison = evaluation.at_its_horizon().clone();
     comparison.model = format!("model {}", saved.current);
     scene.add_model(&run.model, &comparison);
@@ -61,9 +72,12 @@ pub fn stage_page(session: &LabSession) -> Result<Markup, LabError> {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (scene.title) }
                 link rel="stylesheet" href="/assets/view.css";
-                script src="/assets/view.js" defer {}
+                script src=(script) defer {}
             }
-            body { (stage) }
+            body {
+                (stage)
+                @if let Some(line) = not_drawn { p.note title=(line) { (line) } }
+            }
         }
     })
 }

@@ -119,7 +119,10 @@ impl LabSession {
         let mut imported = import_whole(text, name, false, &space)?;
         let mut note: Vec<String> = Vec::new();
         if imported.in_space {
-            space.robot = self.keep_robot(&file, text)?;
+            space.robot = match beside {
+                Some(_) => self.keep_robot_from(name, text)?,
+                None => self.keep_robot(&file, text)?,
+            };
             imported = match self.with_columns(name, text, &space) {
                 Some(Ok(draft)) => {
                     let guesses = draft.guesses.iter();

@@ -177,6 +177,8 @@ impl LabSession {
             }
         }
         saved.round = None;
+        // Paths of another machine.
+        saved.robots_from.clear();
         self.take_up(&mut saved);
         self.change(|own| {
             *own = saved;

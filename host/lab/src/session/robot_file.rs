@@ -3,11 +3,13 @@
 
 use super::LabSession;
 use super::bring::is_robot;
+use super::saved::SavedSession;
 use crate::error::{Error, Result};
+use crate::model::Robot;
 use crate::model::edit::{robot_file, set_robot_file};
 use crate::output::write_new;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The last part of a name of a robot's file, in letters that no file system can misread; a name
 /// that ends as no robot's is given an ending.
@@ -50,6 +52,33 @@ impl LabSession {
         unreachable!("there is no end to the names")
     }
 
+    /// Keeps a copy of a robot's file, and where it came from; the name it got.
+    pub(super) fn keep_robot_from(&self, file: &Path, text: &str) -> Result<String> {
+        let kept = self.keep_robot(&file.display().to_string(), text)?;
+        let from = std::path::absolute(file).map_err(|why| Error::file(file, "read", why))?;
+        self.change(|saved| {
+            saved.robots_from.insert(kept.clone(), from);
+            Ok(())
+        })?;
+        Ok(kept)
+    }
+
+    /// A robot of a model of this session, as the file it came from has it, and a place beside that
+    /// file, where it still is the same: meshes lie there. Else the copy here.
+    pub fn robot_with_meshes(&self, saved: &SavedSession, robot: &Robot) -> (Robot, PathBuf) {
+        let here = self.folder().join(&robot.file);
+        let text = |file: &Path| std::fs::read_to_string(file).ok();
+        let from = saved.robots_from.get(&robot.file);
+        match from.filter(|from| text(from).is_some() && text(from) == text(&here)) {
+            Some(from) => {
+                let mut robot = robot.clone();
+                robot.file = from.display().to_string();
+                (robot, from.with_file_name("model.toml"))
+            }
+            None => (robot.clone(), self.model_path(0)),
+        }
+    }
+
     /// A model's text whose robot is a copy in this session; `beside` is the folder of the model's
     /// file. Without it, as of a model that a browser sent, the robot has to be here already.
     ///
@@ -69,7 +98,7 @@ impl LabSession {
                 let file = folder.join(&robot);
                 let robot_text = std::fs::read_to_string(&file)
                     .map_err(|why| Error::file(&file, "read", why))?;
-                self.keep_robot(&robot, &robot_text)?
+                self.keep_robot_from(&file, &robot_text)?
             }
             None => {
                 let kept = plain_robot(&robot);

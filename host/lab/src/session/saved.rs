@@ -9,7 +9,8 @@ use crate::fitting::{FittedValue, Horizon};
 use crate::log::LogRequest;
 use crate::output::write_new;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// Format of the file.
 const VERSION: u32 = 1;
@@ -24,6 +25,9 @@ pub struct SavedSession {
     pub name: String,
     /// Logs, in the folder `logs` of the session.
     pub logs: Vec<SavedLog>,
+    /// Where robots' files were copied from, by their names here: their meshes lie beside them.
+    #[serde(default)]
+    pub robots_from: BTreeMap<String, PathBuf>,
     /// Models, from the first to the last that was made.
     pub steps: Vec<SavedStep>,
     /// The one in force.
@@ -158,6 +162,7 @@ impl Default for SavedSession {
             version: VERSION,
             name: String::new(),
             logs: Vec::new(),
+            robots_from: BTreeMap::new(),
             steps: Vec::new(),
             current: 0,
             window: ChosenWindow::Automatic,

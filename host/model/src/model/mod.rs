@@ -22,6 +22,7 @@ pub mod reader;
 mod reason;
 mod rig;
 mod robot;
+pub mod shapes;
 pub mod source;
 pub mod suggest;
 mod toml_reason;

@@ -7,8 +7,16 @@ use maud::{Markup, PreEscaped, html as markup};
 
 /// The style of the view.
 pub const STYLE: &str = include_str!("view.css");
-/// The script that moves the view.
-pub const SCRIPT: &str = include_str!("view.js");
+/// The script that moves a planar chain.
+pub const PLANAR: &str = concat!(include_str!("planar.js"), include_str!("view.js"));
+/// The script that moves a robot in space.
+pub const SPACE: &str = concat!(
+    include_str!("frames.js"),
+    include_str!("orbit.js"),
+    include_str!("solids.js"),
+    include_str!("space.js"),
+    include_str!("view.js")
+);
 /// Keys and what they do.
 const KEYS: [(&[&str], &str); 8] = [
     (&["Space"], "play, pause"),
@@ -21,6 +29,20 @@ const KEYS: [(&[&str], &str); 8] = [
     (&["D"], "light, dark"),
 ];
 
+/// Keys of a robot in space alone.
+const SPACE_KEYS: [(&[&str], &str); 5] = [
+    (&["J", "L", "I", "K"], "turn the view; with Shift move it"),
+    (&["U", "O"], "nearer, farther"),
+    (&["1", "2", "3"], "from the front, the side, above"),
+    (&["R"], "the first view again"),
+    (&["N"], "names of joints"),
+];
+
+/// The script that moves `scene`.
+fn script(scene: &Scene) -> &'static str {
+    if scene.tree.is_some() { SPACE } else { PLANAR }
+}
+
 /// A self-contained page that plays `scene`. `command` is the line that makes it again.
 ///
 /// # Errors
@@ -31,7 +53,7 @@ pub fn html(scene: &Scene, command: &str) -> serde_json::Result<String> {
         (stage(scene)?)
         p.note { code { (command) } }
         noscript { p { "This page draws with a script of its own; allow it to run." } }
-        script { (PreEscaped(SCRIPT)) }
+        script { (PreEscaped(script(scene))) }
     };
     Ok(self_contained(&scene.title, &style, &body))
 }
@@ -51,10 +73,12 @@ pub fn stage(scene: &Scene) -> serde_json::Result<Markup> {
             button #theme title="Light or dark (D)" aria-label="Light or dark" { "◐" }
         }
         main {
-            canvas #stage role="img" aria-label="The robot" {}
-            aside { div #drives {} table #angles {} (keys()) }
+            @if scene.tree.is_some() { (space()) } @else {
+                canvas #stage role="img" aria-label="The robot" {}
+            }
+            aside { div #drives {} table #angles {} (keys(scene)) }
         }
-        canvas #chart role="img" aria-label="Angles over time" {}
+        @if scene.tree.is_some() { div.charts { (chart()) } } @else { (chart()) }
         footer {
             button #play title="Play, pause (Space)" { "▶" }
             input #scrub type="range" min="0" max="1000" value="0" step="1" aria-label="Time";
@@ -65,13 +89,34 @@ pub fn stage(scene: &Scene) -> serde_json::Result<Markup> {
     })
 }
 
-fn keys() -> Markup {
+/// From behind to the front: ground and trails, surfaces, marks.
+fn space() -> Markup {
+    markup! {
+        div #space {
+            canvas #floor aria-hidden="true" {}
+            canvas #surfaces aria-hidden="true" {}
+            canvas #stage role="img" aria-label="The robot; drag to turn the view" {}
+            p #plain hidden { "This browser has no WebGL: links are drawn as lines." }
+        }
+    }
+}
+
+fn chart() -> Markup {
+    markup! { canvas #chart role="img" aria-label="Angles over time" {} }
+}
+
+fn keys(scene: &Scene) -> Markup {
+    let of_space = SPACE_KEYS.iter().filter(|_| scene.tree.is_some());
     markup! {
         details {
             summary { "Keys" }
+            @if scene.tree.is_some() {
+                p.hint { "Drag to turn the view, with Shift or the right button to move it; the \
+                          wheel or two fingers zoom." }
+            }
             dl {
-                @for (keys, what) in KEYS {
-                    dt { @for key in keys { kbd { (key) } " " } }
+                @for (keys, what) in KEYS.iter().chain(of_space) {
+                    dt { @for key in *keys { kbd { (key) } " " } }
                     dd { (what) }
                 }
             }

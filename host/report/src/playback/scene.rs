@@ -1,6 +1,8 @@
-//! What the page plays: a chain, and tracks of its angles over time.
+//! What the page plays: a chain or a robot in space, and tracks of its angles over time.
 
+use super::tree::DrawnTree;
 use crate::compare::Comparison;
+use crate::model::shapes::RobotShapes;
 use crate::model::{Angles, Drive, MeasuredSignal, Model};
 use crate::motion::Motion;
 use serde::Serialize;
@@ -13,8 +15,13 @@ const MOST_SAMPLES: usize = 8000;
 pub struct Scene {
     /// Heading.
     pub title: String,
-    /// The chain, from the base outwards.
+    /// A planar chain, from the base outwards; nothing of a robot in space.
     pub links: Vec<DrawnLink>,
+    /// A robot in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tree: Option<DrawnTree>,
+    /// Its joints, from the base outwards.
+    pub joints: Vec<DrawnJoint>,
     /// Whether the first joint turns freely on a bar; else a drive holds it.
     pub on_bar: bool,
     /// Whether to draw a head below the shoulder: three links that hang or stand on a bar by the
@@ -22,6 +29,15 @@ pub struct Scene {
     pub head: bool,
     /// What can be played.
     pub motions: Vec<DrawnMotion>,
+}
+
+/// A joint as it is spoken of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DrawnJoint {
+    /// What the robot's file calls it; "joint 1" in a planar chain.
+    pub name: String,
+    /// Whether it slides: its values are then in m.
+    pub slides: bool,
 }
 
 /// A link as drawn.
@@ -67,9 +83,9 @@ pub struct Track {
     pub kind: TrackKind,
     /// Since the motion's start, s.
     pub time_s: Vec<f64>,
-    /// Per link: angle from hanging, counter-clockwise, rad.
+    /// Per link: angle from hanging, counter-clockwise, rad; nothing of a robot in space.
     pub link_rad: Vec<Vec<f64>>,
-    /// Per joint: angle in the log's own convention, rad.
+    /// Per joint: angle in the log's own convention, rad, or m where it slides.
     pub joint_rad: Vec<Vec<f64>>,
 }
 
@@ -78,7 +94,7 @@ pub struct Track {
 pub struct Input {
     /// Joint, counted from 1.
     pub joint: usize,
-    /// "torque", "duty", "goal".
+    /// "torque", "force", "duty", "goal".
     pub what: &'static str,
     /// Its SI unit.
     pub unit: &'static str,
@@ -87,13 +103,17 @@ pub struct Input {
 }
 
 impl Scene {
-    /// The measured `motions` of `model`, a planar chain.
+    /// The measured `motions` of `model`. A robot in space is drawn as capsules until
+    /// [`dress`](Scene::dress).
     pub fn measured(model: &Model, motions: &[Motion]) -> Scene {
         let passive = |joint: usize| matches!(model.joints[joint].drive, Drive::Passive);
-        let on_bar = passive(0);
+        let is_planar = !model.is_in_space();
+        let on_bar = is_planar && passive(0);
         Scene {
             title: model.name.clone(),
-            links: links(model),
+            links: if is_planar { links(model) } else { Vec::new() },
+            tree: DrawnTree::of(model, &RobotShapes::default()),
+            joints: joints(model),
             on_bar,
             head: on_bar && model.link_count() == 3 && !(passive(1) && passive(2)),
             motions: motions
@@ -105,6 +125,11 @@ impl Scene {
                 })
                 .collect(),
         }
+    }
+
+    /// Draws a robot in space by its own shapes.
+    pub fn dress(&mut self, model: &Model, shapes: &RobotShapes) {
+        self.tree = DrawnTree::of(model, shapes);
     }
 
     /// Adds what a model predicts for each motion.
@@ -150,6 +175,18 @@ fn links(model: &Model) -> Vec<DrawnLink> {
     links.collect()
 }
 
+fn joints(model: &Model) -> Vec<DrawnJoint> {
+    let joints = model.joints.iter().enumerate();
+    let joints = joints.map(|(index, joint)| DrawnJoint {
+        name: match model.joint_name(index) {
+            Some(name) => name.to_string(),
+            None => format!("joint {}", index + 1),
+        },
+        slides: joint.slide.is_some(),
+    });
+    joints.collect()
+}
+
 /// Samples that are kept: every n-th.
 fn thinned(values: &[f64]) -> Vec<f64> {
     let stride = values.len().div_ceil(MOST_SAMPLES).max(1);
@@ -184,7 +221,8 @@ fn measured(model: &Model, motion: &Motion, name: &str, kind: TrackKind) -> Trac
     track(model, name, kind, &thinned(&motion.time_s), &joint_rad)
 }
 
-/// Times from the first; the links' angles from the joints', which are relative or absolute.
+/// Times from the first; in a plane the links' angles from the joints', which are relative or
+/// absolute.
 fn track(
     model: &Model,
     name: &str,
@@ -195,7 +233,8 @@ fn track(
     let first = time_s.first().copied().unwrap_or(0.0);
     let mut from = vec![model.angle_zero.from_hanging_rad(); time_s.len()];
     let mut link_rad = Vec::new();
-    for angles in joint_rad {
+    let planar = joint_rad.iter().filter(|_| !model.is_in_space());
+    for angles in planar {
         let own: Vec<f64> = angles
             .iter()
             .zip(&from)
@@ -217,17 +256,19 @@ fn track(
 
 fn inputs(model: &Model, motion: &Motion) -> Vec<Input> {
     let of = |(joint, values): (usize, &Option<Vec<f64>>)| {
-        let (what, unit) = match model.joints[joint].drive {
+        let slides = model.joints[joint].slide.is_some();
+        let (what, unit, on_slide) = match model.joints[joint].drive {
             Drive::Passive => return None,
-            Drive::Torque => ("torque", "N m"),
-            Drive::Duty(_) => ("duty", ""),
-            Drive::Position { .. } => ("goal", "rad"),
-            Drive::Speed { .. } => ("goal", "rad/s"),
+            Drive::Torque if slides => ("force", "N m", "N"),
+            Drive::Torque => ("torque", "N m", "N"),
+            Drive::Duty(_) => ("duty", "", ""),
+            Drive::Position { .. } => ("goal", "rad", "m"),
+            Drive::Speed { .. } => ("goal", "rad/s", "m/s"),
         };
         Some(Input {
             joint: joint + 1,
             what,
-            unit,
+            unit: if slides { on_slide } else { unit },
             values: rounded(&thinned(values.as_ref()?)),
         })
     };

@@ -2,7 +2,7 @@
 (() => {
   const scene = JSON.parse(document.getElementById("scene").textContent);
   const $ = (id) => document.getElementById(id);
-  const stage = $("stage"), chart = $("chart"), scrub = $("scrub");
+  const chart = $("chart"), scrub = $("scrub");
   const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
   const TRAIL_S = 1.2;
   const TONES = { measured: ["--ink"], model: ["--orange", "--green"], overlay: ["--blue", "--green"] };
@@ -40,35 +40,6 @@
     const share = span > 0 ? Math.min(Math.max((t - track.time_s[k]) / span, 0), 1) : 0;
     return rows.map((row) => row[k] === null || row[next] === null ? NaN : row[k] + share * (row[next] - row[k]));
   };
-  // Joints from the base to the tip, m; angles are from hanging, counter-clockwise.
-  const places = (angles) => {
-    let x = 0, y = 0;
-    const all = [[0, 0]];
-    angles.forEach((angle, i) => {
-      x += scene.links[i].length_m * Math.sin(angle);
-      y -= scene.links[i].length_m * Math.cos(angle);
-      all.push([x, y]);
-    });
-    return all;
-  };
-
-  let bounds;
-  const measure = () => {
-    bounds = [-0.02, 0.02, -0.02, 0.02];
-    for (const track of motion().tracks) {
-      const stride = Math.max(1, Math.floor(track.time_s.length / 400));
-      for (let k = 0; k < track.time_s.length; k += stride) {
-        for (const [x, y] of places(track.link_rad.map((row) => row[k]))) {
-          if (!Number.isFinite(x + y)) continue;
-          bounds = [Math.min(bounds[0], x), Math.max(bounds[1], x), Math.min(bounds[2], y), Math.max(bounds[3], y)];
-        }
-      }
-    }
-    const reach = scene.links.reduce((sum, link) => sum + link.length_m, 0) || 1;
-    const spare = 0.16 * reach;
-    bounds = [bounds[0] - spare, bounds[1] + spare, bounds[2] - spare, bounds[3] + spare];
-  };
-
   const fit = (canvas) => {
     const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
     const width = Math.max(1, Math.round(box.width * ratio)), height = Math.max(1, Math.round(box.height * ratio));
@@ -78,153 +49,47 @@
     pen.clearRect(0, 0, box.width, box.height);
     return [pen, box.width, box.height];
   };
-
-  // Half width of a link: longer and heavier ones are stouter.
-  const heaviest = Math.max(...scene.links.map((link) => link.mass_kg));
-  const reach = scene.links.reduce((sum, link) => sum + link.length_m, 0) || 1;
-  const stout = (link) => reach * (0.022 + 0.036 * Math.sqrt(link.mass_kg / heaviest));
-
-  const capsule = (pen, [ax, ay], [bx, by], ra, rb) => {
-    const angle = Math.atan2(by - ay, bx - ax);
-    pen.beginPath();
-    pen.arc(ax, ay, ra, angle + Math.PI / 2, angle - Math.PI / 2);
-    pen.arc(bx, by, rb, angle - Math.PI / 2, angle + Math.PI / 2);
-    pen.closePath();
+  // Half black, half white, as on drawings.
+  const massMark = (pen, [x, y], r) => {
+    pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI);
+    pen.fillStyle = colour("--paper"); pen.fill();
+    pen.fillStyle = colour("--limb-edge");
+    for (const turn of [0, Math.PI]) { pen.beginPath(); pen.moveTo(x, y); pen.arc(x, y, r, turn, turn + Math.PI / 2); pen.fill(); }
+    pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI);
+    pen.strokeStyle = colour("--limb-edge"); pen.lineWidth = 1; pen.stroke();
   };
 
-  const drawRobot = (pen, to, scale, track, solid) => {
-    const joints = places(between(track, track.link_rad, state.time)).map(to);
-    if (!joints.every(([x, y]) => Number.isFinite(x + y))) return;
-    const tone = colour(toneOf(track));
-    pen.lineJoin = "round";
-    if (scene.head) {
-      const [shoulder, hip] = [joints[1], joints[2]];
-      const long = Math.hypot(shoulder[0] - hip[0], shoulder[1] - hip[1]) || 1;
-      const r = 0.3 * scene.links[1].length_m * scale;
-      const x = shoulder[0] + (shoulder[0] - hip[0]) / long * 1.25 * r, y = shoulder[1] + (shoulder[1] - hip[1]) / long * 1.25 * r;
-      pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI);
-      outline(pen, tone, solid);
-    }
-    scene.links.forEach((link, i) => {
-      const r = stout(link) * scale, last = i === scene.links.length - 1;
-      capsule(pen, joints[i], joints[i + 1], i === 0 ? 0.75 * r : r, last ? 0.7 * r : 0.9 * r);
-      outline(pen, tone, solid);
-    });
-    joints.slice(0, -1).forEach(([x, y], i) => {
-      if (i === 0) return;
-      pen.beginPath(); pen.arc(x, y, 0.011 * reach * scale + 1, 0, 2 * Math.PI);
-      pen.fillStyle = solid ? colour("--paper") : "transparent"; pen.fill();
-      pen.strokeStyle = tone; pen.lineWidth = 1.6; pen.stroke();
-    });
-    if (state.com && solid) masses(pen, to, between(track, track.link_rad, state.time));
-  };
-  const skeleton = (pen, to, track) => {
-    const joints = places(between(track, track.link_rad, state.time)).map(to);
-    if (!joints.every(([x, y]) => Number.isFinite(x + y))) return;
-    pen.strokeStyle = colour(toneOf(track)); pen.lineWidth = 2; pen.setLineDash([5, 4]);
-    pen.beginPath(); joints.forEach((joint) => pen.lineTo(...joint)); pen.stroke(); pen.setLineDash([]);
-  };
-  const outline = (pen, tone, solid) => {
-    if (solid) {
-      pen.fillStyle = colour("--skin"); pen.fill();
-      pen.fillStyle = tone; pen.globalAlpha = 0.16; pen.fill(); pen.globalAlpha = 1;
-      pen.setLineDash([]);
-    } else {
-      pen.fillStyle = tone; pen.globalAlpha = 0.08; pen.fill(); pen.globalAlpha = 1;
-      pen.setLineDash([5, 4]);
-    }
-    pen.strokeStyle = tone; pen.lineWidth = solid ? 2 : 1.6; pen.stroke(); pen.setLineDash([]);
-  };
-  // Each link's centre of mass, and that of them all.
-  const masses = (pen, to, angles) => {
-    let sum = 0, sx = 0, sy = 0;
-    const joints = places(angles);
-    const mark = ([x, y], r) => {
-      pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI);
-      pen.fillStyle = colour("--paper"); pen.fill();
-      pen.fillStyle = colour("--limb-edge");
-      for (const turn of [0, Math.PI]) { pen.beginPath(); pen.moveTo(x, y); pen.arc(x, y, r, turn, turn + Math.PI / 2); pen.fill(); }
-      pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI);
-      pen.strokeStyle = colour("--limb-edge"); pen.lineWidth = 1; pen.stroke();
-    };
-    scene.links.forEach((link, i) => {
-      const x = joints[i][0] + link.com_m * Math.sin(angles[i]), y = joints[i][1] - link.com_m * Math.cos(angles[i]);
-      sum += link.mass_kg; sx += link.mass_kg * x; sy += link.mass_kg * y;
-      if (scene.links.length > 1) mark(to([x, y]), 3.5);
-    });
-    mark(to([sx / sum, sy / sum]), 6.5);
-  };
+  const player = { scene, state, motion, colour, toneOf, before, between };
+  Object.assign(player, { fit, massMark, TRAIL_S, redraw: () => drawStage() });
+  const picture = (scene.tree ? spaceStage : planarStage)(player);
+  const drawStage = picture.draw;
 
-  const drawStage = () => {
-    const [pen, width, height] = fit(stage);
-    const scale = Math.min(width / (bounds[1] - bounds[0]), height / (bounds[3] - bounds[2]));
-    const cx = (bounds[0] + bounds[1]) / 2, cy = (bounds[2] + bounds[3]) / 2;
-    const to = ([x, y]) => [width / 2 + (x - cx) * scale, height / 2 - (y - cy) * scale];
-    // Grid of 5 cm or more, so that it stays calm.
-    const cell = [0.05, 0.1, 0.2, 0.5, 1, 2, 5].find((c) => c * scale > 46) || 10;
-    pen.strokeStyle = colour("--grid"); pen.lineWidth = 1;
-    const halfW = width / 2 / scale, halfH = height / 2 / scale;
-    for (let x = Math.ceil((cx - halfW) / cell) * cell; x < cx + halfW; x += cell) {
-      const [px] = to([x, 0]); pen.beginPath(); pen.moveTo(px, 0); pen.lineTo(px, height); pen.stroke();
-    }
-    for (let y = Math.ceil((cy - halfH) / cell) * cell; y < cy + halfH; y += cell) {
-      const [, py] = to([0, y]); pen.beginPath(); pen.moveTo(0, py); pen.lineTo(width, py); pen.stroke();
-    }
-    const [bx, by] = to([0, 0]);
-    // The stand of the bar, or the bracket of the drive.
-    pen.strokeStyle = colour("--bar"); pen.lineCap = "round"; pen.globalAlpha = 0.45; pen.lineWidth = 5;
-    if (scene.on_bar) {
-      pen.beginPath(); pen.moveTo(bx, by); pen.lineTo(bx, height); pen.stroke();
-    } else {
-      const r = 0.07 * reach * scale;
-      pen.fillStyle = colour("--bar"); pen.fillRect(bx - r, by - r, 2 * r, 2 * r);
-    }
-    pen.globalAlpha = 1; pen.lineCap = "butt";
-    const tracks = motion().tracks.filter((_, i) => state.shown[i]);
-    if (state.trail) for (const track of tracks) drawTrail(pen, to, track);
-    // What was measured stands in front.
-    for (const track of tracks.filter((t) => t.kind !== "measured")) drawRobot(pen, to, scale, track, false);
-    for (const track of tracks.filter((t) => t.kind === "measured")) drawRobot(pen, to, scale, track, true);
-    // Where they agree, the others' outlines would be hidden.
-    pen.globalAlpha = 0.55;
-    for (const track of tracks.filter((t) => t.kind !== "measured")) skeleton(pen, to, track);
-    pen.globalAlpha = 1;
-    const r = Math.max(5, 0.017 * reach * scale);
-    pen.beginPath(); pen.arc(bx, by, r, 0, 2 * Math.PI);
-    pen.fillStyle = colour("--bar"); pen.fill();
-    pen.strokeStyle = colour("--limb-edge"); pen.lineWidth = 1.5; pen.stroke();
-    pen.beginPath(); pen.arc(bx - r / 3, by - r / 3, r / 3.5, 0, 2 * Math.PI);
-    pen.fillStyle = colour("--paper"); pen.globalAlpha = 0.7; pen.fill(); pen.globalAlpha = 1;
-    // A scale.
-    pen.strokeStyle = pen.fillStyle = colour("--soft"); pen.lineWidth = 2;
-    pen.beginPath(); pen.moveTo(14, height - 14); pen.lineTo(14 + cell * scale, height - 14); pen.stroke();
-    pen.font = "12px system-ui, sans-serif"; pen.textAlign = "left";
-    pen.fillText(cell < 1 ? `${Math.round(100 * cell)} cm` : `${cell} m`, 14, height - 20);
-  };
+  // What people read of a joint: factor, unit, its mark behind a number, decimals of that.
+  const SHOWN = { hinge: [180 / Math.PI, "deg", "°", 2], slide: [1000, "mm", " mm", 1] };
+  const shownAs = (joint) => SHOWN[scene.joints[joint].slides ? "slide" : "hinge"];
 
-  const drawTrail = (pen, to, track) => {
-    const from = before(track.time_s, state.time - TRAIL_S), until = before(track.time_s, state.time);
-    pen.strokeStyle = track.kind === "measured" ? colour("--blue") : colour(toneOf(track));
-    pen.lineWidth = 2.2; pen.lineCap = "round";
-    let last = null;
-    for (let k = from; k <= until; k++) {
-      const all = places(track.link_rad.map((row) => row[k]));
-      const here = to(all[all.length - 1]);
-      if (last && Number.isFinite(here[0] + last[0])) {
-        pen.globalAlpha = 0.75 * Math.max(0, 1 - (state.time - track.time_s[k]) / TRAIL_S);
-        pen.beginPath(); pen.moveTo(...last); pen.lineTo(...here); pen.stroke();
-      }
-      last = here;
-    }
-    pen.globalAlpha = 1; pen.lineCap = "butt";
-  };
-
-  // Joints side by side: each its own small chart with all tracks.
+  // Joints side by side, of a robot in space in rows: each its own small chart with all tracks.
   const PAD = { left: 44, right: 10, top: 18, bottom: 20, gap: 50 };
-  const panels = (width) => {
-    const count = motion().tracks[0].joint_rad.length;
+  const LEAST = 120, ROW_REM = 6.4;
+  const columns = (width) => {
+    const count = scene.joints.length;
+    const fitting = Math.floor((width - PAD.left - PAD.right + PAD.gap) / (LEAST + PAD.gap));
+    const most = scene.tree ? Math.max(1, Math.min(count, fitting)) : count;
+    return Math.ceil(count / Math.ceil(count / most));
+  };
+  const rows = (width) => Math.ceil(scene.joints.length / columns(width));
+  // Left edge, width, top and height of each.
+  const panels = (width, height) => {
+    const count = columns(width), tall = height / rows(width);
     const each = (width - PAD.left - PAD.right - PAD.gap * (count - 1)) / count;
-    return Array.from({ length: count }, (_, i) => [PAD.left + i * (each + PAD.gap), each]);
+    return scene.joints.map((_, i) =>
+      [PAD.left + (i % count) * (each + PAD.gap), each, Math.floor(i / count) * tall, tall]);
+  };
+  const fitted = (pen, text, width) => {
+    if (pen.measureText(text).width <= width) return text;
+    let length = text.length;
+    while (length > 1 && pen.measureText(`${text.slice(0, length)}…`).width > width) length--;
+    return `${text.slice(0, length)}…`;
   };
   const round = (step) => {
     const power = 10 ** Math.floor(Math.log10(step));
@@ -236,10 +101,12 @@
     return [all, Math.max(0, -Math.floor(Math.log10(step) + 1e-9))];
   };
   const drawChart = () => {
+    const lines = rows(chart.getBoundingClientRect().width);
+    chart.style.height = lines > 1 ? `${lines * ROW_REM}rem` : "";
     const [pen, width, height] = fit(chart), total = end();
-    const deg = 180 / Math.PI, top = PAD.top, bottom = height - PAD.bottom;
     pen.font = "11px system-ui, sans-serif";
-    panels(width).forEach(([left, each], joint) => {
+    panels(width, height).forEach(([left, each, above, tall], joint) => {
+      const [deg, unit] = shownAs(joint), top = above + PAD.top, bottom = above + tall - PAD.bottom;
       let low = Infinity, high = -Infinity;
       motion().tracks.forEach((track, i) => {
         if (!state.shown[i] && i > 0) return;
@@ -249,17 +116,18 @@
       const spare = 0.06 * (high - low); low -= spare; high += spare;
       const X = (t) => left + t / total * each, Y = (v) => bottom - (v - low) / (high - low) * (bottom - top);
       pen.strokeStyle = colour("--rule"); pen.fillStyle = colour("--soft"); pen.lineWidth = 1; pen.textAlign = "right";
-      const [rows, decimals] = ticks(low, high, 4);
-      for (const v of rows) {
+      const [levels, decimals] = ticks(low, high, 4);
+      for (const v of levels) {
         pen.beginPath(); pen.moveTo(left, Y(v)); pen.lineTo(left + each, Y(v)); pen.stroke();
         pen.fillText(v.toFixed(decimals), left - 6, Y(v) + 4);
       }
       pen.textAlign = "center";
-      const [columns, places] = ticks(0, total, Math.max(2, Math.floor(each / 70)));
-      for (const t of columns) pen.fillText(t.toFixed(places), X(t), height - 6);
+      const [times, places] = ticks(0, total, Math.max(2, Math.floor(each / 70)));
+      for (const t of times) pen.fillText(t.toFixed(places), X(t), above + tall - 6);
       pen.textAlign = "left"; pen.fillStyle = colour("--ink");
-      pen.fillText(`joint ${joint + 1}, deg`, left, 11);
-      pen.save(); pen.beginPath(); pen.rect(left, 0, each, height); pen.clip();
+      const title = `${scene.joints[joint].name}, ${unit}`;
+      pen.fillText(fitted(pen, title, each + PAD.gap / 2), left, above + 11);
+      pen.save(); pen.beginPath(); pen.rect(left, above, each, tall); pen.clip();
       motion().tracks.forEach((track, i) => {
         if (!state.shown[i]) return;
         pen.strokeStyle = colour(toneOf(track)); pen.lineWidth = track.kind === "measured" ? 2 : 1.4;
@@ -308,9 +176,12 @@
     };
     const kinds = { measured: "measured", model: "model", overlay: "overlay" };
     $("angles").replaceChildren(
-      cells("th", ["Angle", ...shown.map((track) => kinds[track.kind])]),
-      ...first.joint_rad.map((_, joint) => cells("td", [`joint ${joint + 1}`, ...shown.map((track) =>
-        `${number(between(track, [track.joint_rad[joint]], state.time)[0] * 180 / Math.PI, 2)}°`)])));
+      cells("th", [scene.tree ? "Joint" : "Angle", ...shown.map((track) => kinds[track.kind])]),
+      ...scene.joints.map(({ name }, joint) => cells("td", [name, ...shown.map((track) => {
+        const [scale, , mark, places] = shownAs(joint);
+        const [value] = between(track, [track.joint_rad[joint]], state.time);
+        return number(value * scale, places) + mark;
+      })])));
     $("clock").textContent = `${state.time.toFixed(2)} / ${end().toFixed(2)} s`;
     scrub.value = Math.round(1000 * state.time / end());
     $("play").textContent = state.playing ? "❚❚" : "▶";
@@ -331,15 +202,18 @@
     state.motion = index; state.time = 0; $("motion").value = index;
     state.shown = motion().tracks.map(() => true);
     for (const input of motion().inputs) input.most = Math.max(1e-9, ...input.values.map(Math.abs).filter(Number.isFinite));
+    $("drives").classList.toggle("many", motion().inputs.length > 6);
     $("drives").replaceChildren(...motion().inputs.map((input) => {
       const node = document.createElement("div");
       node.className = "drive";
-      node.innerHTML = `<div><span>joint ${input.joint}, ${input.what}</span><b></b></div>
+      node.innerHTML = `<div><span></span><b></b></div>
         <svg viewBox="0 0 200 10" preserveAspectRatio="none"><rect width="200" height="10" rx="2" fill="var(--grid)"/>
         <rect class="level" y="0" height="10" fill="var(--blue)"/><line x1="100" x2="100" y2="10" stroke="var(--soft)"/></svg>`;
+      const { name } = scene.joints[input.joint - 1];
+      node.querySelector("span").textContent = `${name}, ${input.what}`;
       return node;
     }));
-    measure(); legend(); draw();
+    picture.measure(); legend(); draw();
   };
   const seek = (time) => { state.time = Math.min(Math.max(time, 0), end()); draw(); };
   const play = (on) => {
@@ -373,7 +247,9 @@
   scrub.addEventListener("input", () => seek(scrub.value / 1000 * end()));
   const drag = (e) => {
     const box = chart.getBoundingClientRect(), x = e.clientX - box.left;
-    const panel = panels(box.width).find(([left, each]) => x >= left - PAD.gap / 2 && x <= left + each + PAD.gap / 2);
+    const y = Math.min(Math.max(e.clientY - box.top, 0), box.height);
+    const panel = panels(box.width, box.height).find(([left, each, top, tall]) =>
+      x >= left - PAD.gap / 2 && x <= left + each + PAD.gap / 2 && y >= top && y <= top + tall);
     if (panel) seek((x - panel[0]) / panel[1] * end());
   };
   chart.addEventListener("pointerdown", (e) => { chart.setPointerCapture(e.pointerId); drag(e); });
@@ -389,11 +265,12 @@
       "-": () => faster(-1), "+": () => faster(1), "=": () => faster(1),
       t: () => { state.trail = !state.trail; draw(); }, c: () => { state.com = !state.com; draw(); },
       m: () => choose((state.motion + 1) % scene.motions.length), d: () => { dark = !dark; paint(); },
+      ...picture.keys,
     };
     const act = keys[e.key.length === 1 ? e.key.toLowerCase() : e.key];
     if (!act) return;
     e.preventDefault();
-    act();
+    act(e);
   });
   document.documentElement.classList.toggle("dark", dark);
   choose(Math.min(Number(hash.get("motion")) || 0, scene.motions.length - 1));

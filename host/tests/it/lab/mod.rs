@@ -14,6 +14,7 @@ mod plots;
 mod safety;
 mod server;
 mod sessions;
+mod stage_in_space;
 mod two_browsers;
 mod wide_log;
 

@@ -4,6 +4,7 @@ use super::text;
 use handstand::effects::EFFECTS;
 use handstand::model::edit::{add_effect, set_values};
 use handstand::model::import::ImportPlan;
+use handstand::model::shapes::read_stl;
 use handstand::model::{EffectInstance, Model};
 use std::path::Path;
 
@@ -45,6 +46,24 @@ pub(crate) fn edit(bytes: &[u8]) {
     if let Ok(written) = add_effect(text, path, &instance, None) {
         let again = Model::parse(&written, path).expect("what was written is a model");
         assert_eq!(again.effects.len(), model.effects.len() + 1);
+    }
+}
+
+/// A robot's mesh: its triangles have corners, also where it is thinned.
+pub(crate) fn mesh(bytes: &[u8]) {
+    let Ok(mesh) = read_stl(bytes) else {
+        return;
+    };
+    for mesh in [mesh.thinned(mesh.triangles.len() / 2), mesh] {
+        let corners = mesh.corners_m.len();
+        let of = |corner: &u32| (*corner as usize) < corners;
+        assert!(mesh.triangles.as_flattened().iter().all(of));
+        assert!(
+            mesh.corners_m
+                .as_flattened()
+                .iter()
+                .all(|own| own.is_finite())
+        );
     }
 }
 

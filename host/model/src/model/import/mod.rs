@@ -12,15 +12,17 @@ mod log_plan;
 pub(super) mod mjcf;
 mod planar;
 pub(super) mod prefixes;
+mod solid;
 pub(super) mod space;
 #[cfg(test)]
 mod tests;
 pub(super) mod tree;
-mod urdf;
+pub(super) mod urdf;
 mod write;
 pub(super) mod xml;
 
 pub use log_plan::{JointPlan, LogPlan, MovingJoint, ServoFigures, import_for_log, moving_joints};
+pub use solid::Solid;
 pub use space::Locked;
 pub use tree::Remark;
 

@@ -191,7 +191,11 @@ fn order(robot: Element, carried: &[Option<(usize, Element)>]) -> Result<Vec<usi
     }
 }
 
-fn pose(origin: Option<Element>) -> Result<Isometry3<f64>> {
+/// A pose; none is that of its parent.
+///
+/// # Errors
+/// Numbers that are none.
+pub(in crate::model) fn pose(origin: Option<Element>) -> Result<Isometry3<f64>> {
     let Some(origin) = origin else {
         return Ok(Isometry3::identity());
     };

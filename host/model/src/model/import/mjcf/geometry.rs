@@ -3,9 +3,9 @@
 use super::defaults::Attributes;
 use super::orientation::{Compiler, along};
 use crate::error::Result;
+use crate::model::import::solid::Solid;
 use crate::model::import::tree::Inertial;
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Vector3};
-use std::f64::consts::PI;
 
 /// Of water, as in MuJoCo, kg/m^3.
 const DENSITY: f64 = 1000.0;
@@ -33,15 +33,36 @@ pub(super) fn inertial(own: &Attributes, compiler: &Compiler) -> Result<Inertial
             .element
             .wrong("the mass of a shell is not read", super::FLATTEN));
     }
+    let (pose, solid) = solid(own, compiler)?;
+    let (volume, moments) = solid.volume();
+    let density = own.number("density")?.unwrap_or(DENSITY);
+    let mass_kg = own.number("mass")?.unwrap_or(density * volume);
+    if mass_kg < 0.0 {
+        return Err(own.element.wrong("a mass below 0", "mend its sign"));
+    }
+    let shape = Inertial {
+        mass_kg,
+        com_m: Point3::origin(),
+        inertia_kg_m2: Matrix3::from_diagonal(&(moments * mass_kg)),
+    };
+    Ok(shape.seen_from(&pose))
+}
+
+/// A shape and its pose in the body's frame, whatever it weighs.
+///
+/// # Errors
+/// Sizes that are none, meshes and other shapes that have none.
+pub(in crate::model) fn solid(
+    own: &Attributes,
+    compiler: &Compiler,
+) -> Result<(Isometry3<f64>, Solid)> {
+    let kind = own.text("type").unwrap_or("sphere");
     let wrong = || {
         own.element
             .wrong(format!("the size of this {kind} is no size"), "mend size")
     };
     let mut size = own.numbers("size")?.unwrap_or_default();
-    let mut pose = Isometry3::from_parts(
-        Translation3::from(own.vector("pos")?.unwrap_or_default()),
-        compiler.orientation(own)?.unwrap_or_default(),
-    );
+    let mut pose = pose(own, compiler)?;
     if let Some(ends) = own.numbers("fromto")? {
         let [a, b, c, d, e, f] = ends[..] else {
             return Err(wrong());
@@ -66,31 +87,32 @@ pub(super) fn inertial(own: &Attributes, compiler: &Compiler) -> Result<Inertial
     if size.iter().any(|size| *size <= 0.0) {
         return Err(wrong());
     }
-    let (volume, moments) = match (kind, size.as_slice()) {
-        ("sphere", [r]) => (4.0 / 3.0 * PI * r.powi(3), Vector3::repeat(0.4 * r * r)),
-        ("ellipsoid", [a, b, c]) => (4.0 / 3.0 * PI * a * b * c, squares(*a, *b, *c) / 5.0),
-        ("box", [a, b, c]) => (8.0 * a * b * c, squares(*a, *b, *c) / 3.0),
-        ("cylinder", [r, half]) => {
-            let across = r * r / 4.0 + half * half / 3.0;
-            (
-                2.0 * PI * r * r * half,
-                Vector3::new(across, across, r * r / 2.0),
-            )
-        }
-        ("capsule", [r, half]) => capsule(*r, *half),
+    let solid = match (kind, size.as_slice()) {
+        ("sphere", [r]) => Solid::Ellipsoid {
+            radii_m: Vector3::repeat(*r),
+        },
+        ("ellipsoid", [a, b, c]) => Solid::Ellipsoid {
+            radii_m: Vector3::new(*a, *b, *c),
+        },
+        ("box", [a, b, c]) => Solid::Box {
+            half_m: Vector3::new(*a, *b, *c),
+        },
+        ("cylinder", &[radius_m, half_m]) => Solid::Cylinder { radius_m, half_m },
+        ("capsule", &[radius_m, half_m]) => Solid::Capsule { radius_m, half_m },
         _ => return Err(wrong()),
     };
-    let density = own.number("density")?.unwrap_or(DENSITY);
-    let mass_kg = own.number("mass")?.unwrap_or(density * volume);
-    if mass_kg < 0.0 {
-        return Err(own.element.wrong("a mass below 0", "mend its sign"));
-    }
-    let shape = Inertial {
-        mass_kg,
-        com_m: Point3::origin(),
-        inertia_kg_m2: Matrix3::from_diagonal(&(moments * mass_kg)),
-    };
-    Ok(shape.seen_from(&pose))
+    Ok((pose, solid))
+}
+
+/// Where a shape's frame stands in its body's.
+///
+/// # Errors
+/// Numbers that are none.
+pub(in crate::model) fn pose(own: &Attributes, compiler: &Compiler) -> Result<Isometry3<f64>> {
+    Ok(Isometry3::from_parts(
+        Translation3::from(own.vector("pos")?.unwrap_or_default()),
+        compiler.orientation(own)?.unwrap_or_default(),
+    ))
 }
 
 /// Whether a shape is of a group that has mass.
@@ -100,20 +122,4 @@ fn counts(own: &Attributes, compiler: &Compiler) -> Result<bool> {
     };
     let group = own.number("group")?.unwrap_or(0.0);
     Ok((low..=high).contains(&group))
-}
-
-/// b^2 + c^2 and so on round.
-fn squares(a: f64, b: f64, c: f64) -> Vector3<f64> {
-    Vector3::new(b * b + c * c, a * a + c * c, a * a + b * b)
-}
-
-/// Volume, and moments per mass: a cylinder of height 2 h between two half balls.
-fn capsule(r: f64, h: f64) -> (f64, Vector3<f64>) {
-    let (cylinder, balls) = (2.0 * PI * r * r * h, 4.0 / 3.0 * PI * r.powi(3));
-    let volume = cylinder + balls;
-    // A half ball's centre of mass lies 3 r / 8 above its flat side.
-    let across =
-        cylinder * (r * r / 4.0 + h * h / 3.0) + balls * (0.4 * r * r + h * h + 0.75 * h * r);
-    let about = cylinder * r * r / 2.0 + balls * 0.4 * r * r;
-    (volume, Vector3::new(across, across, about) / volume)
 }

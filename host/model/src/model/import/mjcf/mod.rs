@@ -2,7 +2,7 @@
 
 mod actuators;
 pub(in crate::model) mod defaults;
-mod geometry;
+pub(in crate::model) mod geometry;
 mod inertials;
 mod joints;
 mod option;
