@@ -156,7 +156,7 @@ fn lean_lines(stiffness: &Stiffness, design: &Design) -> Vec<String> {
         };
         lines.push(format!(
             "Lean under a lasting {TORQUE_NM} {unit} at joint {}: {}",
-            joint + 1,
+            design.names.label(joint),
             said(lean.collect())
         ));
     }

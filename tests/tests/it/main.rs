@@ -18,6 +18,7 @@ mod next;
 mod simulators;
 mod space;
 mod space_export;
+mod space_gains;
 mod space_names;
 mod space_search;
 mod spoiled;

@@ -11,6 +11,39 @@ use nalgebra::DMatrix;
 /// Wider matrices are left to `--csv` and `--json`.
 const WIDEST: usize = 12;
 
+/// Longer ones, where joints have names, likewise.
+const LONGEST: usize = 40;
+
+/// Pose and inputs that hold it.
+fn operating_point(design: &Design) -> String {
+    let joints = design.plant.a.nrows() / 2;
+    // A zero has no sign for people.
+    let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v + 0.0)));
+    if design.names.joint(1).is_none() {
+        return format!(
+            "`{}` at q = [{}]{}, held by u = [{}]",
+            design.model,
+            joined(&design.x0[..joints]),
+            pose_unit(design),
+            joined(&design.u0)
+        );
+    }
+    let with_unit = |value: f64, unit: &str| format!("{} {unit}", plain(value + 0.0));
+    let pose = design.x0[..joints].iter().zip(&design.states).enumerate();
+    let pose = pose.map(|(joint, (value, state))| {
+        format!("{} {}", design.names.label(joint), with_unit(*value, state.unit))
+    });
+    let inputs = design.u0.iter().zip(&design.inputs);
+    let inputs =
+        inputs.map(|(value, input)| format!("{} = {}", input.name, with_unit(*value, input.unit)));
+    format!(
+        "`{}` at {}\nheld by {}",
+        design.model,
+        list(pose),
+        list(inputs)
+    )
+}
+
 /// Unit of a pose: of each joint where some slide.
 fn pose_unit(design: &Design) -> String {
     let joints = design.plant.a.nrows() / 2;
@@ -27,16 +60,7 @@ fn pose_unit(design: &Design) -> String {
 
 /// Gains, poles, zeros, what fixed point costs.
 pub fn text(design: &Design) -> String {
-    let joints = design.plant.a.nrows() / 2;
-    // A zero has no sign for people.
-    let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v + 0.0)));
-    let mut parts = vec![format!(
-        "`{}` at q = [{}]{}, held by u = [{}]",
-        design.model,
-        joined(&design.x0[..joints]),
-        pose_unit(design),
-        joined(&design.u0)
-    )];
+    let mut parts = vec![operating_point(design)];
     parts.push(match &design.sampled {
         None => "Continuous time: u = u0 - K (x - x0)".to_string(),
         Some((plant, delay_s)) => format!(
@@ -53,7 +77,7 @@ pub fn text(design: &Design) -> String {
             list(sums.map(|sum| sum.name.as_str()))
         ));
     }
-    parts.extend(omitted_lines(&design.omitted));
+    parts.extend(omitted_lines(design));
     parts.push(String::new());
     parts.push(gain_table(design));
     parts.push(String::new());
@@ -71,7 +95,8 @@ pub fn text(design: &Design) -> String {
 }
 
 /// A line per effect that the design leaves out, its joints together.
-pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
+pub(super) fn omitted_lines(design: &Design) -> Vec<String> {
+    let omitted = &design.omitted;
     let kinds = omitted.iter().map(|o| (o.effect, o.why));
     let mut lines = Vec::new();
     for (at, (effect, why)) in kinds.enumerate() {
@@ -80,7 +105,7 @@ pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
             continue;
         }
         let joints = omitted.iter().filter(same).filter_map(|o| o.joint);
-        let joints: Vec<String> = joints.map(|joint| (joint + 1).to_string()).collect();
+        let joints: Vec<String> = joints.map(|joint| design.names.label(joint)).collect();
         let at = match joints.len() {
             0 => String::new(),
             1 => format!(" at joint {}", joints[0]),
@@ -93,6 +118,13 @@ pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
 }
 
 fn gain_table(design: &Design) -> String {
+    let (rows, columns) = (names(&design.inputs), names(&design.states));
+    let k = &design.gains.k;
+    let is_named = design.names.joint(1).is_some();
+    // Names are wide: a row for each state, as many as are read at a glance.
+    if is_named && rows.len() <= WIDEST && columns.len() <= LONGEST {
+        return matrix("K'", &columns, &rows, &k.transpose());
+    }
     if design.states.len() > WIDEST {
         return format!(
             "K is {} x {}: too wide for a page; --csv and --json give every digit",
@@ -100,8 +132,7 @@ fn gain_table(design: &Design) -> String {
             design.states.len()
         );
     }
-    let (rows, columns) = (names(&design.inputs), names(&design.states));
-    matrix("K", &rows, &columns, &design.gains.k)
+    matrix("K", &rows, &columns, k)
 }
 
 fn matrix(corner: &str, rows: &[String], columns: &[String], values: &DMatrix<f64>) -> String {
