@@ -25,7 +25,7 @@ const STEP_NM: f64 = 0.001;
 const MAP_REGIONS: f64 = 2.0;
 const MAP_LEAST_RAD: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Colours of joints and inputs, in turn.
-const TONES: [Tone; 4] = [Tone::Blue, Tone::Orange, Tone::Green, Tone::Ink];
+const TONES: [Tone; 5] = [Tone::Blue, Tone::Orange, Tone::Green, Tone::Ink, Tone::Grey];
 
 /// What a page of gains is made of.
 #[derive(Debug, Clone, Copy)]

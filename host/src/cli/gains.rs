@@ -38,8 +38,8 @@ mod recovery;
 mod request;
 
 use recovery::Unrecovered;
-pub(super) use request::requested;
 use request::SpeedsArg;
+pub(super) use request::requested;
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
@@ -263,7 +263,12 @@ impl GainsArgs {
             (self.tune, "--tune"),
             (self.ts != 0.01, "--ts"),
             (self.delay.is_some(), "--delay"),
-            (self.pose.as_ref().is_some_and(|pose| *pose != PoseText::Upright), "--pose"),
+            (
+                self.pose
+                    .as_ref()
+                    .is_some_and(|pose| *pose != PoseText::Upright),
+                "--pose",
+            ),
             (self.balance, "--balance"),
             (!self.without.is_empty(), "--without"),
             (self.continuous, "--continuous"),

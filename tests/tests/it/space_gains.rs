@@ -6,11 +6,11 @@ use crate::simulators::{answers, python};
 use crate::space::{CRANE, mjcf, model, urdf};
 use handstand::Model;
 use handstand::model::Drive;
-use nalgebra::DMatrix;
 use handstand::study::response;
 use handstand::synth::{
     Design, DesignError, Linearisation, PoseReason, PoseText, Request, balanced, linearise,
 };
+use nalgebra::DMatrix;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -113,8 +113,16 @@ fn a_planar_chain_has_the_same_linear_model_as_a_tree() {
     let (planar, spatial) = (planar(), spatial(folder.path()));
     for pose in [[0.0; 3], [0.4, -0.9, 0.7], [3.0, 0.3, -1.2]] {
         let [chain, tree] = [&planar, &spatial].map(|model| linearise(model, &pose).unwrap());
-        assert!(off(&tree.plant.a, &chain.plant.a) < 1e-9, "{}", tree.plant.a);
-        assert!(off(&tree.plant.b, &chain.plant.b) < 1e-9, "{}", tree.plant.b);
+        assert!(
+            off(&tree.plant.a, &chain.plant.a) < 1e-9,
+            "{}",
+            tree.plant.a
+        );
+        assert!(
+            off(&tree.plant.b, &chain.plant.b) < 1e-9,
+            "{}",
+            tree.plant.b
+        );
         assert_eq!(tree.plant.c, chain.plant.c);
         for (tree, chain) in tree.inputs.iter().zip(&chain.inputs) {
             assert!((tree - chain).abs() < 1e-9, "{tree} {chain}");
@@ -148,14 +156,20 @@ fn off_peers(models: &[(Value, Model, Vec<f64>)], within: f64) -> Option<f64> {
         .collect();
     let mut worst = 0.0f64;
     for ((case, linear), theirs) in
-        cases.iter().zip(&linear).zip(answers(&python, "linearise.py", &cases))
+        cases
+            .iter()
+            .zip(&linear)
+            .zip(answers(&python, "linearise.py", &cases))
     {
         let n = linear.plant.a.nrows() / 2;
         let of = |place| linear.plant.a.view((n, place), (n, n)).into_owned();
         let per_input = linear.plant.b.rows(n, n).into_owned();
         for (key, ours) in [("q", of(0)), ("dq", of(n)), ("u", per_input)] {
             let found = off(&ours, &slope(&theirs, key));
-            assert!(found < within, "{case}, {key}: {found:.1e}: {ours} {theirs}");
+            assert!(
+                found < within,
+                "{case}, {key}: {found:.1e}: {ours} {theirs}"
+            );
             worst = worst.max(found);
         }
         let rest: Vec<f64> = serde_json::from_value(theirs["rest"].clone()).unwrap();
@@ -240,7 +254,11 @@ fn drives_and_effects_enter_as_in_mujoco() {
     let (mut model, joints) = model(SERVOS, &file, &[]);
     model.joints[3].drive = Drive::Torque;
     let models = [[0.3, 0.4, -0.7, 0.05], [-1.0, -0.5, 1.2, -0.1]].map(|pose| {
-        (json!({ "file": file, "joints": joints }), model.clone(), pose.to_vec())
+        (
+            json!({ "file": file, "joints": joints }),
+            model.clone(),
+            pose.to_vec(),
+        )
     });
     if let Some(worst) = off_peers(&models, 1e-5) {
         println!("largest difference {worst:.1e}");
@@ -259,8 +277,15 @@ fn crane(folder: &Path, drives: [&str; 3], effects: &str) -> Model {
             "[[log.joint]]\nposition = {{ column = \"{name}\", unit = \"rad\" }}\n"
         );
         if !drive.contains("passive") {
-            let unit = if drive.contains("position") { "rad" } else { "N m" };
-            let _ = writeln!(columns, "input = {{ column = \"u_{name}\", unit = \"{unit}\" }}");
+            let unit = if drive.contains("position") {
+                "rad"
+            } else {
+                "N m"
+            };
+            let _ = writeln!(
+                columns,
+                "input = {{ column = \"u_{name}\", unit = \"{unit}\" }}"
+            );
         }
     }
     Model::parse(&(text + effects + &columns), &folder.join("crane.toml")).unwrap()
@@ -277,7 +302,9 @@ fn left(model: &Model, design: &Design, request: &Request, start: &[f64]) -> Vec
     let late = found.time_s.partition_point(|time| *time < 5.0);
     assert!((found.time_s.last().unwrap() - 6.0).abs() < 0.02, "it fell");
     let largest = |angles: &Vec<f64>| {
-        angles[late..].iter().fold(0.0, |most: f64, angle| most.max(angle.abs()))
+        angles[late..]
+            .iter()
+            .fold(0.0, |most: f64, angle| most.max(angle.abs()))
     };
     found.angle_rad.iter().map(largest).collect()
 }
@@ -322,7 +349,11 @@ const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/>
 
 fn pendulum(folder: &Path, locked: &str) -> Model {
     std::fs::write(folder.join("pendulum.urdf"), PENDULUM).unwrap();
-    let ring = if locked.is_empty() { "[[joint]]\nname = \"ring\"\ndrive = \"passive\"\n" } else { "" };
+    let ring = if locked.is_empty() {
+        "[[joint]]\nname = \"ring\"\ndrive = \"passive\"\n"
+    } else {
+        ""
+    };
     let ringing = if locked.is_empty() {
         "[[log.joint]]\nposition = { column = \"ring\", unit = \"rad\" }\n"
     } else {
@@ -346,13 +377,23 @@ fn a_rotary_pendulum_is_held_upright_by_its_arm() {
     let model = pendulum(folder.path(), "locked = { ring = 0 }\n");
     let up = balanced(&model, &[0.0, 3.0]).unwrap();
     assert!((up[1] - std::f64::consts::PI).abs() < 1e-9, "{up:?}");
-    let request = Request { pose_rad: up, ..Request::standard(&model) };
+    let request = Request {
+        pose_rad: up,
+        ..Request::standard(&model)
+    };
     let design = Design::of(&model, &request).unwrap();
     assert!(design.controllability.is_full());
-    assert!(design.poles.iter().any(|pole| pole.re > 5.0), "{:?}", design.poles);
+    assert!(
+        design.poles.iter().any(|pole| pole.re > 5.0),
+        "{:?}",
+        design.poles
+    );
     let left = left(&model, &design, &request, &[0.0, 0.05]);
     assert!(left.iter().all(|left| *left < 5e-3), "{left:?}");
-    let leaning = Request { pose_rad: vec![0.0, 1.0], ..request };
+    let leaning = Request {
+        pose_rad: vec![0.0, 1.0],
+        ..request
+    };
     let said = Design::of(&model, &leaning).unwrap_err().to_string();
     assert!(said.starts_with("joint swing is passive"), "{said}");
 }
@@ -367,23 +408,34 @@ fn a_branch_that_no_drive_reaches_is_named() {
     };
     let error = Design::of(&model, &request).unwrap_err();
     let said = error.to_string();
-    assert!(matches!(error, DesignError::Uncontrollable { .. }), "{said}");
-    assert!(said.contains("q_ring") && said.contains("no input reaches it"), "{said}");
+    assert!(
+        matches!(error, DesignError::Uncontrollable { .. }),
+        "{said}"
+    );
+    assert!(
+        said.contains("q_ring") && said.contains("no input reaches it"),
+        "{said}"
+    );
     // A joint about a plumb axis balances anywhere, one that hangs where it hangs.
     let mut passive = pendulum(folder.path(), "");
     passive.joints[0].drive = Drive::Passive;
     let found = balanced(&passive, &[0.7, 0.2, -0.3]).unwrap();
-    assert!((found[0] - 0.7).abs() < 1e-9 && found[1].abs() + found[2].abs() < 1e-9, "{found:?}");
+    assert!(
+        (found[0] - 0.7).abs() < 1e-9 && found[1].abs() + found[2].abs() < 1e-9,
+        "{found:?}"
+    );
 }
 
 #[test]
 fn poses_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    let ranged = CRANE.replacen("type=\"continuous\"", "type=\"revolute\"", 2).replacen(
-        "<axis xyz=\"0 1 0\"/>",
-        "<axis xyz=\"0 1 0\"/><limit lower=\"0.5\" upper=\"1.5\" effort=\"3\" velocity=\"0\"/>",
-        1,
-    );
+    let ranged = CRANE
+        .replacen("type=\"continuous\"", "type=\"revolute\"", 2)
+        .replacen(
+            "<axis xyz=\"0 1 0\"/>",
+            "<axis xyz=\"0 1 0\"/><limit lower=\"0.5\" upper=\"1.5\" effort=\"3\" velocity=\"0\"/>",
+            1,
+        );
     let file = folder.path().join("crane.urdf");
     let (model, _) = with_torques(&ranged, &file);
     let resolve = |text: &str| text.parse::<PoseText>().unwrap().resolve(&model);
@@ -397,7 +449,10 @@ fn poses_are_refused_by_name() {
     assert!(matches!(refused("4=0.2"), PoseReason::Unknown { .. }));
     assert!(matches!(refused("roll=0.2,3=1"), PoseReason::Twice { .. }));
     assert!(matches!(refused("0,1"), PoseReason::Size { angles: 2, .. }));
-    assert!(matches!(refused("luff=0.4"), PoseReason::BeyondRange { .. }));
+    assert!(matches!(
+        refused("luff=0.4"),
+        PoseReason::BeyondRange { .. }
+    ));
     assert!(matches!(refused("upright"), PoseReason::Upright { .. }));
     assert!(matches!(refused("roll=inf"), PoseReason::NotNumber(_)));
 }

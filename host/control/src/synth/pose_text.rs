@@ -86,7 +86,10 @@ impl FromStr for PoseText {
             });
             named.collect::<Option<_>>().map(PoseText::Named)
         } else {
-            parts().map(number).collect::<Option<_>>().map(PoseText::Angles)
+            parts()
+                .map(number)
+                .collect::<Option<_>>()
+                .map(PoseText::Angles)
         };
         found.ok_or_else(|| {
             "give an angle per joint in rad between commas, or some by name (`elbow=0.3`), or \
@@ -162,7 +165,9 @@ fn joint(model: &Model, name: &str) -> Option<usize> {
 /// What each joint is called.
 fn labels(model: &Model) -> Vec<String> {
     let names = JointNames::of(model);
-    (0..model.link_count()).map(|joint| names.label(joint)).collect()
+    (0..model.link_count())
+        .map(|joint| names.label(joint))
+        .collect()
 }
 
 /// One angle per joint, all of them numbers and within the ranges of the robot's file.

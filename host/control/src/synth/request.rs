@@ -87,7 +87,9 @@ impl Request {
             Some(range) => range.diagonal("the range of inputs", driven.len())?,
             None => {
                 let joints = driven.iter().zip(held);
-                joints.map(|(&joint, held)| default_limit(model, joint, *held)).collect()
+                joints
+                    .map(|(&joint, held)| default_limit(model, joint, *held))
+                    .collect()
             }
         };
         positive("range", "input", &ranges, driven.len())?;

@@ -1,8 +1,8 @@
 //! Gains: weights about those by the ranges, sampling time and delay as sliders.
 
 use super::{frame, lacking};
-use crate::reply::LabError;
 use crate::model::{Model, default_pose};
+use crate::reply::LabError;
 use crate::session::LabSession;
 use maud::{Markup, html};
 

@@ -63,7 +63,9 @@ fn leave_out(model: &mut Model, without: &[String]) -> Result<Vec<String>> {
         let before = model.effects.len();
         model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {
-            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
+            let mut held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
+            held.sort_unstable();
+            held.dedup();
             let held = match held.as_slice() {
                 [] => "none at all".to_string(),
                 held => held.join(", "),
@@ -85,7 +87,7 @@ fn posed(args: &GainsArgs, model: &Model, console: &Console) -> Result<Vec<f64>>
             let open = pose.left_open(model);
             if !open.is_empty() {
                 let open = joints_at(model, &pose_rad, &open);
-                console.say(&format!("joints that --pose leaves as they are: {open}"));
+                console.say(&format!("not named by --pose: {open}"));
             }
             pose_rad
         }
@@ -94,7 +96,7 @@ fn posed(args: &GainsArgs, model: &Model, console: &Console) -> Result<Vec<f64>>
             if model.is_in_space() {
                 let all: Vec<usize> = (0..pose_rad.len()).collect();
                 let all = joints_at(model, &pose_rad, &all);
-                console.say(&format!("pose, for --pose names no other: {all}"));
+                console.say(&format!("no --pose: {all}"));
             }
             pose_rad
         }

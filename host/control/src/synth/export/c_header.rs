@@ -105,7 +105,11 @@ fn macros(design: &Design, law: &FixedLaw) -> String {
 fn macro_names(signals: &[Signal]) -> Vec<String> {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let plain = |signal: &Signal| {
-        let name = signal.name.to_uppercase().replace("(K-", "_K").replace(')', "");
+        let name = signal
+            .name
+            .to_uppercase()
+            .replace("(K-", "_K")
+            .replace(')', "");
         name.chars().map(letter).collect::<String>()
     };
     let mut all: Vec<String> = signals.iter().map(plain).collect();

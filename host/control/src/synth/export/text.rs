@@ -28,20 +28,31 @@ fn operating_point(design: &Design) -> String {
             joined(&design.u0)
         );
     }
-    let with_unit = |value: f64, unit: &str| format!("{} {unit}", plain(value + 0.0));
-    let pose = design.x0[..joints].iter().zip(&design.states).enumerate();
-    let pose = pose.map(|(joint, (value, state))| {
-        format!("{} {}", design.names.label(joint), with_unit(*value, state.unit))
-    });
-    let inputs = design.u0.iter().zip(&design.inputs);
-    let inputs =
-        inputs.map(|(value, input)| format!("{} = {}", input.name, with_unit(*value, input.unit)));
+    let labels = (0..joints).map(|joint| design.names.label(joint));
+    let inputs = design.inputs.iter().map(|input| input.name.clone());
     format!(
         "`{}` at {}\nheld by {}",
         design.model,
-        list(pose),
-        list(inputs)
+        with_units(labels, &design.x0, &design.states),
+        with_units(inputs, &design.u0, &design.inputs)
     )
+}
+
+/// Names with their values, the unit once where all have the same.
+fn with_units(names: impl Iterator<Item = String>, values: &[f64], signals: &[Signal]) -> String {
+    let values = values.iter().zip(signals);
+    let all: Vec<(String, f64, &str)> = names
+        .zip(values)
+        .map(|(name, (value, signal))| (name, *value, signal.unit))
+        .collect();
+    let unit = all[0].2;
+    let same = all.iter().all(|(.., own)| *own == unit);
+    let said = all.iter().map(|(name, value, own)| match same {
+        true => format!("{name} {}", plain(*value)),
+        false => format!("{name} {} {own}", plain(*value)),
+    });
+    let said = list(said);
+    if same { format!("{said} {unit}") } else { said }
 }
 
 /// Unit of a pose: of each joint where some slide.
@@ -291,6 +302,23 @@ fn stationary_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
     lines
 }
 
+/// Ranges and steps of the states; where joints have names, states of the same together.
+fn ranges(design: &Design, fixed: &FixedDesign) -> Vec<String> {
+    let together = design.names.joint(1).is_some();
+    let mut ranges: Vec<(String, String)> = Vec::new();
+    for (i, state) in design.states.iter().enumerate() {
+        let (range, step) = (plain(fixed.ranges.state[i]), short(fixed.law.state_step[i]));
+        let said = format!("±{range} in steps of {step}");
+        match ranges.iter_mut().find(|(_, own)| together && *own == said) {
+            Some((names, _)) => *names = format!("{names}, {}", state.name),
+            None => ranges.push((state.name.clone(), said)),
+        }
+    }
+    let said = ranges.into_iter();
+    said.map(|(names, range)| format!("{names} {range}"))
+        .collect()
+}
+
 fn fixed_lines(design: &Design, fixed: &FixedDesign) -> Vec<String> {
     let (law, loss) = (&fixed.law, &fixed.loss);
     let header = [
@@ -317,11 +345,7 @@ fn fixed_lines(design: &Design, fixed: &FixedDesign) -> Vec<String> {
         ]);
     }
     right(&mut table);
-    let ranges = design.states.iter().enumerate().map(|(i, state)| {
-        let (range, step) = (plain(fixed.ranges.state[i]), short(law.state_step[i]));
-        format!("{} ±{range} in steps of {step}", state.name)
-    });
-    let ranges: Vec<String> = ranges.collect();
+    let ranges = ranges(design, fixed);
     let beyond = design.inputs.iter().enumerate().filter(|(i, _)| {
         let error = loss.gain_error[*i] + loss.state_error[*i] + loss.input_error[*i];
         error > fixed.ranges.input[*i]

@@ -65,8 +65,7 @@ impl Load {
         let twice = 2.0 * other.moment.dot(arm);
         self.mass_kg += other.mass_kg;
         self.moment += other.moment + arm * other.mass_kg;
-        self.inertia += other.inertia + about(arm) * other.mass_kg
-            + Matrix3::identity() * twice
+        self.inertia += other.inertia + about(arm) * other.mass_kg + Matrix3::identity() * twice
             - cross
             - cross.transpose();
     }
@@ -127,7 +126,10 @@ impl TreeAtPose {
 
     /// G, n, N m (N where joints slide): the torques that hold the tree at rest.
     pub fn gravity(&self) -> DVector<f64> {
-        let torques = self.joints.iter().map(|j| -self.gravity_m_s2.dot(&j.momentum));
+        let torques = self
+            .joints
+            .iter()
+            .map(|j| -self.gravity_m_s2.dot(&j.momentum));
         DVector::from_iterator(self.joints.len(), torques)
     }
 
