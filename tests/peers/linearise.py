@@ -83,11 +83,10 @@ def by_mujoco(case):
     mujoco.mj_forward(model, data)
     rest = data.qacc.copy()
     nv = model.nv
-    a, b = np.zeros((2 * nv, 2 * nv)), np.zeros((2 * nv, max(model.nu, 1)))
-    b = b[:, : model.nu]
+    a, b = np.zeros((2 * nv, 2 * nv)), np.zeros((2 * nv, model.nu)) if model.nu else None
     mujoco.mjd_transitionFD(model, data, DIFFERENCE, True, a, b, None, None)
     mass = np.zeros((nv, nv))
-    mujoco.mj_fullM(model, mass, data.qM)
+    mujoco.mj_fullM(model, data, mass)
     per_q, per_dq = a[nv:, :nv] / STEP_S, (a[nv:, nv:] - np.eye(nv)) / STEP_S
     per_torque = np.linalg.inv(mass)
     columns = [

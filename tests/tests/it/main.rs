@@ -19,6 +19,7 @@ mod simulators;
 mod space;
 mod space_export;
 mod space_gains;
+mod space_gains_told;
 mod space_names;
 mod space_search;
 mod spoiled;

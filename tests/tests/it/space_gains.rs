@@ -40,7 +40,7 @@ inertia_kg_m2 = 1e-3
 [[effect]]
 kind = "mass"
 joint = 2
-mass_kg = 0.1
+added_kg = 0.1
 "#;
 
 fn log() -> String {
@@ -223,7 +223,11 @@ fn arms_of_their_owners_files_have_the_linear_models_of_pinocchio() {
         let (mut model, joints) = with_torques(&text, &file);
         // The files' limits of torque are left out, as Pinocchio leaves them out.
         model.effects.clear();
-        let pose = joints.iter().map(|_| 0.2).collect();
+        let pose = (0..joints.len()).map(|joint| {
+            let (low, high) = model.range(joint).unwrap();
+            low + 0.6 * (high - low)
+        });
+        let pose = pose.collect();
         (json!({ "file": file, "joints": joints }), model, pose)
     });
     if let Some(worst) = off_peers(&models, 1e-9) {
@@ -242,7 +246,7 @@ const SERVOS: &str = r#"<mujoco><compiler angle="radian"/><worldbody><body pos="
 <inertial mass="0.2" pos="0.08 0 0.01" diaginertia="1e-3 1e-3 2e-4"/>
 <body pos="0.15 0 0"><joint name="reach" type="slide" axis="1 0 0.2" damping="0.3"/>
 <inertial mass="0.1" pos="0.02 0 0" diaginertia="1e-4 1e-4 1e-4"/></body></body></body></body>
-</worldbody><actuator><motor joint="pan" forcerange="-5 5" gear="2"/>
+</worldbody><actuator><motor joint="pan" forcerange="-5 5"/>
 <position joint="lift" kp="20" kv="1.5" forcerange="-9 9"/>
 <position joint="flex" kp="12" kv="0.8" forcerange="-6 6"/></actuator></mujoco>"#;
 
@@ -349,24 +353,22 @@ const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/>
 
 fn pendulum(folder: &Path, locked: &str) -> Model {
     std::fs::write(folder.join("pendulum.urdf"), PENDULUM).unwrap();
-    let ring = if locked.is_empty() {
-        "[[joint]]\nname = \"ring\"\ndrive = \"passive\"\n"
+    let [ring, ringing] = if locked.is_empty() {
+        [
+            "[[joint]]\nname = \"ring\"\ndrive = \"passive\"\n",
+            "[[log.joint]]\nposition = { column = \"ring\", unit = \"rad\" }\n",
+        ]
     } else {
-        ""
-    };
-    let ringing = if locked.is_empty() {
-        "[[log.joint]]\nposition = { column = \"ring\", unit = \"rad\" }\n"
-    } else {
-        ""
+        ["", ""]
     };
     let text = format!(
         "[rig]\nname = \"pendulum\"\nrobot = \"pendulum.urdf\"\n{locked}\
-         [[joint]]\nname = \"turn\"\ndrive = \"torque\"\n\
-         [[joint]]\nname = \"swing\"\ndrive = \"passive\"\n{ring}\
+         [[joint]]\nname = \"turn\"\ndrive = \"torque\"\n{ring}\
+         [[joint]]\nname = \"swing\"\ndrive = \"passive\"\n\
          [log]\ntime = {{ column = \"t\", unit = \"s\" }}\n\
          [[log.joint]]\nposition = {{ column = \"turn\", unit = \"rad\" }}\n\
-         input = {{ column = \"torque\", unit = \"N m\" }}\n\
-         [[log.joint]]\nposition = {{ column = \"swing\", unit = \"rad\" }}\n{ringing}"
+         input = {{ column = \"torque\", unit = \"N m\" }}\n{ringing}\
+         [[log.joint]]\nposition = {{ column = \"swing\", unit = \"rad\" }}\n"
     );
     Model::parse(&text, &folder.join("pendulum.toml")).unwrap()
 }
