@@ -217,7 +217,7 @@ fn gains_in_space() {
             "gains pendulum.toml --pose turn=3",
             "gains pendulum.toml --pose 3.1415926",
             "gains pendulum.toml --pose upright",
-            "gains pendulum.toml --limit 0.4 --q 1,1",
+            "gains pendulum.toml --pose swing",
             "controllers pendulum.toml",
             "deploy pendulum.toml --dry-run",
         ],

@@ -11,7 +11,9 @@ use crate::server::LabState;
 use crate::session::{LabSession, aside, in_degrees};
 use crate::study::{left_out, response, verify};
 use crate::synth::export::{self, Provenance};
-use crate::synth::{CostWeights, Design, LoopFigures, PoseText, Request, Time, rows};
+use crate::synth::{
+    CostWeights, Design, LoopFigures, OmittedEffect, PoseText, Request, Time, rows,
+};
 use axum::Json;
 use axum::extract::{Path, Query, State};
 use serde::Deserialize;
@@ -154,7 +156,7 @@ fn designed(model: &Model, made: &Provenance, asked: &GainsAsked) -> Result<Valu
         "inputs": design.inputs.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
         "fixed": fixed,
         "margins": margins_json(figures.as_ref())["margins"],
-        "omitted": omitted.map(|o| o.effect.info().title).collect::<Vec<_>>(),
+        "omitted": omitted.map(|o| omitted_text(o, &design)).collect::<Vec<_>>(),
         "degrees": in_degrees(model),
         "response": {
             "time_s": response.time_s,
@@ -163,6 +165,14 @@ fn designed(model: &Model, made: &Provenance, asked: &GainsAsked) -> Result<Valu
         },
         "command": made.command,
     }))
+}
+
+fn omitted_text(omitted: &OmittedEffect, design: &Design) -> String {
+    let title = omitted.effect.info().title;
+    match omitted.joint {
+        Some(joint) => format!("{title} at joint {}", design.names.label(joint)),
+        None => title.to_string(),
+    }
 }
 
 /// What the simulated loop does with every effect of the model, in the words of `handstand gains`;

@@ -47,9 +47,13 @@ fn with_units(names: impl Iterator<Item = String>, values: &[f64], signals: &[Si
         .collect();
     let unit = all[0].2;
     let same = all.iter().all(|(.., own)| *own == unit);
-    let said = all.iter().map(|(name, value, own)| match same {
-        true => format!("{name} {}", plain(*value)),
-        false => format!("{name} {} {own}", plain(*value)),
+    let said = all.iter().map(|(name, value, own)| {
+        let value = plain(*value);
+        if same {
+            format!("{name} {value}")
+        } else {
+            format!("{name} {value} {own}")
+        }
     });
     let said = list(said);
     if same { format!("{said} {unit}") } else { said }
