@@ -20,6 +20,7 @@ mod space;
 mod space_export;
 mod space_gains;
 mod space_gains_told;
+mod space_linear;
 mod space_names;
 mod space_search;
 mod spoiled;
