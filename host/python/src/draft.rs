@@ -59,6 +59,7 @@ pub struct Draft {
 #[pyo3(signature = (log, *, name=None, drive=None, angle_zero=None, angles=None, length_m=None,
                     mass_kg=None, robot=None, lock=None, names=None, calibration=None,
                     unit=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub fn init(
     log: &Bound<'_, PyAny>,
     name: Option<String>,

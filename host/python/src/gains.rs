@@ -11,12 +11,13 @@ use handstand::sim::closed_loop::Velocity;
 use handstand::study::{Verification, left_out, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
 use handstand::synth::{
-    CostWeights, Design, LoopFigures, Readings, Request, Time, Weight, balanced,
+    CostWeights, Design, LoopFigures, PoseText, Readings, Request, Time, Weight, balanced,
 };
 use nalgebra::DMatrix;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use std::cell::Cell;
+use std::collections::BTreeMap;
 
 /// A matrix as an array.
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
@@ -45,8 +46,10 @@ pub struct Gains {
 ///     Sampling time, s; `None` designs in continuous time.
 /// delay_s : float
 ///     From sample to torque, s; that of the model without.
-/// pose_rad : array
-///     The pose, rad, an angle per joint; upright without.
+/// pose_rad : array or dict
+///     The pose, rad, of slides m: an angle per joint, or of a robot in space those of some joints
+///     by name. Without it upright; in space, and where a joint is not named, 0, or the middle of
+///     the joint's range where that does not hold 0.
 /// balance : bool
 ///     Take the balanced pose that is nearest.
 /// position_step_rad : float
@@ -95,7 +98,7 @@ pub fn gains(
         }
     };
     let mut pose_rad = match pose_rad {
-        Some(given) => numbers("pose_rad", given)?,
+        Some(given) => pose(&model.inner, given)?,
         None => standard.pose_rad.clone(),
     };
     if balance {
@@ -141,6 +144,15 @@ pub fn gains(
         verification,
         figures,
     })
+}
+
+/// A pose: an angle per joint, or angles by the joints' names.
+fn pose(model: &handstand::Model, given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let pose = match given.extract::<BTreeMap<String, f64>>() {
+        Ok(named) => PoseText::Named(named.into_iter().collect()),
+        Err(_) => PoseText::Angles(numbers("pose_rad", given)?),
+    };
+    pose.resolve(model).map_err(exception)
 }
 
 fn designed(

@@ -1,5 +1,7 @@
 """Gains against python-control, and what is learned reaching control."""
 
+from pathlib import Path
+
 import control
 import numpy as np
 import pytest
@@ -49,3 +51,49 @@ def test_a_weight_of_the_wrong_size_is_refused() -> None:
         hs.gains(model, q=[1.0, 2.0])
     with pytest.raises(hs.UsageError, match="square"):
         hs.gains(model, q=np.ones((2, 3)))
+
+
+URDF = """<robot name="pan"><link name="base"/>
+<link name="mast"><inertial><mass value="0.4"/>
+<inertia ixx="1e-3" iyy="1e-3" izz="2e-3" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="boom"><inertial><origin xyz="0.1 0 0"/><mass value="0.3"/>
+<inertia ixx="3e-4" iyy="2e-3" izz="2e-3" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="pan" type="continuous"><parent link="base"/><child link="mast"/>
+<axis xyz="0 0 1"/></joint>
+<joint name="tilt" type="revolute"><parent link="mast"/><child link="boom"/>
+<axis xyz="0 -1 0"/><limit lower="-1" upper="1" effort="3" velocity="0"/></joint></robot>"""
+
+MODEL = """[rig]
+name = "pan"
+robot = "pan.urdf"
+[[joint]]
+name = "pan"
+drive = "torque"
+[[joint]]
+name = "tilt"
+drive = "torque"
+[log]
+time = { column = "t", unit = "s" }
+[[log.joint]]
+position = { column = "pan", unit = "rad" }
+input = { column = "pan_nm", unit = "N m" }
+[[log.joint]]
+position = { column = "tilt", unit = "rad" }
+input = { column = "tilt_nm", unit = "N m" }
+"""
+
+
+def test_a_robot_in_space_is_held_at_a_pose_that_its_joints_name(tmp_path: Path) -> None:
+    (tmp_path / "pan.urdf").write_text(URDF)
+    (tmp_path / "pan.toml").write_text(MODEL)
+    model = hs.Model.load(tmp_path / "pan.toml")
+    found = hs.gains(model, pose_rad={"tilt": 0.5})
+    assert found.stabilised
+    assert found.states == ["q_pan", "q_tilt", "dq_pan", "dq_tilt"]
+    np.testing.assert_allclose(found.x0, [0.0, 0.5, 0.0, 0.0])
+    np.testing.assert_allclose(found.u0, [0.0, 0.3 * 9.81 * 0.1 * np.cos(0.5)], atol=1e-12)
+    np.testing.assert_array_equal(found.k, hs.gains(model, pose_rad=[0.0, 0.5]).k)
+    assert "GAINS_STATE_STEP_Q_TILT" in found.c_header()
+    for pose in ({"tlt": 0.5}, {"tilt": 1.5}, [0.5]):
+        with pytest.raises(hs.HandstandError, match="remedy"):
+            hs.gains(model, pose_rad=pose)

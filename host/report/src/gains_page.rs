@@ -25,7 +25,7 @@ const STEP_NM: f64 = 0.001;
 const MAP_REGIONS: f64 = 2.0;
 const MAP_LEAST_RAD: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Colours of joints and inputs, in turn.
-const TONES: [Tone; 4] = [Tone::Blue, Tone::Orange, Tone::Green, Tone::Ink];
+const TONES: [Tone; 5] = [Tone::Blue, Tone::Orange, Tone::Green, Tone::Ink, Tone::Grey];
 
 /// What a page of gains is made of.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,7 @@ pub fn gains_page(report: &GainsReport<'_>) -> Result<String> {
         words(report),
         responses(design, &initial, &step),
         poles(design),
-        region(&map),
+        region(design, &map),
         provenance(report),
     ];
     if let Some(section) = robustness(report)? {
@@ -88,7 +88,7 @@ pub fn gains_page(report: &GainsReport<'_>) -> Result<String> {
 }
 
 fn words(report: &GainsReport<'_>) -> Section {
-    let text = verification_text(report.verified, report.model.slides());
+    let text = verification_text(report.verified, report.model);
     Section {
         id: "verdict",
         title: "Verdict",
@@ -224,7 +224,7 @@ fn poles(design: &Design) -> Section {
 }
 
 /// Starts that come back and starts that do not.
-fn region(map: &[MappedStart]) -> Section {
+fn region(design: &Design, map: &[MappedStart]) -> Section {
     let degrees = |stabilised: bool| {
         let own = map
             .iter()
@@ -238,8 +238,8 @@ fn region(map: &[MappedStart]) -> Section {
     ];
     let chart = Chart::new(
         "Starts in the plane of the first two joints",
-        "joint 1, deg",
-        "joint 2, deg",
+        &format!("joint {}, deg", design.names.label(0)),
+        &format!("joint {}, deg", design.names.label(1)),
         curves,
     );
     Section {

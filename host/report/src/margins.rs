@@ -81,7 +81,12 @@ fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
 
 /// Gain, phase and delay of all alike and of each alone, the disk, the peaks.
 fn lines_of(title: &str, margins: &Margins, channels: &[&str]) -> Vec<String> {
-    let mut lines = vec![format!("{title:<24}gain              phase       delay")];
+    let longest = channels.iter().map(|name| name.chars().count() + 7);
+    let width = longest.fold(22, usize::max);
+    let wider = width + 2;
+    let mut lines = vec![format!(
+        "{title:<wider$}gain              phase       delay"
+    )];
     let mut put = |name: &str, of: &LoopMargin| {
         let above = if of.gain[1].is_finite() {
             format!("{:.3}", of.gain[1])
@@ -95,7 +100,7 @@ fn lines_of(title: &str, margins: &Margins, channels: &[&str]) -> Vec<String> {
                 .map(|rad| format!("{:.1} deg", rad.to_degrees())),
         );
         let delay = or_any(of.delay_s.map(|s| format!("{:.1} ms", 1e3 * s)));
-        lines.push(format!("  {name:<22}{gain:<18}{phase:<12}{delay}"));
+        lines.push(format!("  {name:<width$}{gain:<18}{phase:<12}{delay}"));
     };
     put("all alike", &margins.common);
     if channels.len() > 1 {
@@ -105,7 +110,7 @@ fn lines_of(title: &str, margins: &Margins, channels: &[&str]) -> Vec<String> {
     }
     let disk = &margins.disk;
     lines.push(format!(
-        "  {:<22}{:<18}{:<12}disk margin {:.3} at {:.3} rad/s",
+        "  {:<width$}{:<18}{:<12}disk margin {:.3} at {:.3} rad/s",
         "each in its own way",
         if disk.gain().is_finite() {
             format!("±{:.1} dB", disk.gain_db())
@@ -156,7 +161,7 @@ fn lean_lines(stiffness: &Stiffness, design: &Design) -> Vec<String> {
         };
         lines.push(format!(
             "Lean under a lasting {TORQUE_NM} {unit} at joint {}: {}",
-            joint + 1,
+            design.names.label(joint),
             said(lean.collect())
         ));
     }

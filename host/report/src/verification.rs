@@ -1,11 +1,13 @@
 //! The verification of a design in words.
 
+use crate::model::{JointNames, Model};
 use crate::study::{LimitedFigure, NEAR_RAD, STABILISED_SHARE, Verification, VerifiedLaw, Without};
 
 /// Whether the simulated loop is stabilised, from how far, and what limits it.
 ///
-/// Where joints slide, a spread in rad is as much in m.
-pub fn verification_text(verified: &Verification, slides: bool) -> String {
+/// Where joints of `model` slide, a spread in rad is as much in m.
+pub fn verification_text(verified: &Verification, model: &Model) -> String {
+    let (slides, names) = (model.slides(), &JointNames::of(model));
     let also_mm = |rad: f64| {
         if slides {
             format!(" and {:.1} mm", 1e3 * rad)
@@ -46,7 +48,7 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
     } else {
         "There is no cube of starts of which 95 % are stabilised.".to_string()
     });
-    lines.extend(ellipsoid(verified, slides));
+    lines.extend(ellipsoid(verified, slides, names));
     if !verified.without.is_empty() {
         lines.push(format!(
             "Without the effects that the design leaves out: {}.",
@@ -55,7 +57,7 @@ pub fn verification_text(verified: &Verification, slides: bool) -> String {
                 verified.region_as_designed_open
             )
         ));
-        lines.push(limits(verified, &reach));
+        lines.push(limits(verified, names, &reach));
     }
     lines.join("\n")
 }
@@ -143,9 +145,13 @@ fn swing(verified: &Verification, slides: bool) -> Option<String> {
 }
 
 /// Which effect limits what, taken out alone.
-fn limits(verified: &Verification, reach: &dyn Fn(f64, bool) -> String) -> String {
+fn limits(
+    verified: &Verification,
+    names: &JointNames,
+    reach: &dyn Fn(f64, bool) -> String,
+) -> String {
     let place = |without: &Without| match without.joint {
-        Some(joint) => format!("{} at joint {joint}", without.effect),
+        Some(joint) => format!("{} at joint {}", without.effect, names.label(joint - 1)),
         None => without.effect.to_string(),
     };
     let region = verified.limiting(LimitedFigure::Region).map(|without| {
@@ -179,12 +185,17 @@ fn limits(verified: &Verification, reach: &dyn Fn(f64, bool) -> String) -> Strin
 }
 
 /// The region's shape: how far along each of its axes, and where it is weak.
-fn ellipsoid(verified: &Verification, slides: bool) -> Option<String> {
+fn ellipsoid(verified: &Verification, slides: bool, names: &JointNames) -> Option<String> {
     let ellipsoid = verified.ellipsoid.as_ref()?;
     let axes = ellipsoid.half_axes_rad.iter();
     let axes: Vec<String> = axes.map(|rad| format!("{:.2}", rad.to_degrees())).collect();
-    let weak = ellipsoid.directions.first()?.iter();
-    let weak: Vec<String> = weak.map(|share| format!("{share:+.2}")).collect();
+    let weak = ellipsoid.directions.first()?.iter().enumerate();
+    let weak: Vec<String> = weak
+        .map(|(joint, share)| match names.joint(joint + 1) {
+            Some(name) => format!("{name} {share:+.2}"),
+            None => format!("{share:+.2}"),
+        })
+        .collect();
     Some(format!(
         "Ellipsoid of starts of which 95 % are stabilised: half-axes {}{} deg{}, weak along ({}); \
          {} of {} runs within it.",

@@ -29,7 +29,7 @@ use handstand::report::{
 };
 use handstand::study::{TUNING_STEPS, Tuned, left_out, tune, verification_steps, verify};
 use handstand::synth::export::{self, Provenance};
-use handstand::synth::{Design, DesignError, LoopFigures, Request};
+use handstand::synth::{Design, DesignError, LoopFigures, PoseText, Request};
 use handstand::{Error, Result};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -38,8 +38,8 @@ mod recovery;
 mod request;
 
 use recovery::Unrecovered;
+use request::SpeedsArg;
 pub(super) use request::requested;
-use request::{Pose, SpeedsArg, pose};
 
 /// Gains that balance a model at a pose.
 #[derive(Debug, Clone, clap::Args)]
@@ -68,10 +68,10 @@ pub struct GainsArgs {
     /// Delay of the inputs, s; the model's own without it
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     delay: Option<f64>,
-    /// Angles in rad, the model's way, or `upright`
-    #[arg(long, value_name = "ANGLES", default_value = "upright")]
-    #[arg(value_parser = pose, allow_hyphen_values = true)]
-    pose: Pose,
+    /// Angles in rad, the model's way: one per joint, some by name as `elbow=0.3,wrist=-1`, or
+    /// `upright` [default: upright; in space, and of joints not named, 0 or mid-range]
+    #[arg(long, value_name = "ANGLES", value_parser = pose, allow_hyphen_values = true)]
+    pose: Option<PoseText>,
     /// Move the passive joints from the pose to where they balance
     #[arg(long)]
     balance: bool,
@@ -145,6 +145,10 @@ fn state_space(text: &str) -> Result<PathBuf, String> {
     }
 }
 
+fn pose(text: &str) -> Result<PoseText, String> {
+    text.parse()
+}
+
 fn c_name(text: &str) -> Result<String, String> {
     if export::is_c_name(text) {
         Ok(text.to_string())
@@ -191,7 +195,7 @@ pub fn run(args: &GainsArgs, console: &Console) -> Result<ExitStatus> {
             recovered
                 .as_ref()
                 .map_or(String::new(), |before| before.text()),
-            verification_text(&verified, whole.slides())
+            verification_text(&verified, &whole)
         )
     })?;
     write(args, &design, &made, &data, console)?;
@@ -259,7 +263,12 @@ impl GainsArgs {
             (self.tune, "--tune"),
             (self.ts != 0.01, "--ts"),
             (self.delay.is_some(), "--delay"),
-            (!matches!(self.pose, Pose::Upright), "--pose"),
+            (
+                self.pose
+                    .as_ref()
+                    .is_some_and(|pose| *pose != PoseText::Upright),
+                "--pose",
+            ),
             (self.balance, "--balance"),
             (!self.without.is_empty(), "--without"),
             (self.continuous, "--continuous"),

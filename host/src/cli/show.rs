@@ -44,6 +44,7 @@ pub fn undetermined(refused: &Undetermined) -> String {
 
 /// Says which effects of the model a linear design leaves out.
 pub fn omitted(model: &Model, console: &Console) -> Result<()> {
+    model.planar_only("these designs are of planar chains (`gains` takes both)")?;
     let model = handstand::sim::bare_motors(model);
     let omitted = linearise(&model, &upright(&model))?.omitted;
     if !omitted.is_empty() {

@@ -203,6 +203,28 @@ fn refusals() {
 }
 
 #[test]
+fn gains_in_space() {
+    let bench = Bench::new();
+    bench.put("pendulum.urdf", include_str!("../data/pendulum.urdf"));
+    bench.put("pendulum.toml", include_str!("../data/pendulum.toml"));
+    golden(
+        &bench,
+        "gains_in_space",
+        &[
+            "gains pendulum.toml --pose swing=3 --balance --c gains.h",
+            "gains pendulum.toml --pose swing=3",
+            "gains pendulum.toml --pose sing=3",
+            "gains pendulum.toml --pose turn=3",
+            "gains pendulum.toml --pose 3.1415926",
+            "gains pendulum.toml --pose upright",
+            "gains pendulum.toml --pose swing",
+            "controllers pendulum.toml",
+            "deploy pendulum.toml --dry-run",
+        ],
+    );
+}
+
+#[test]
 fn gains() {
     let bench = bench();
     bench.put(

@@ -86,6 +86,7 @@ impl Study {
                 let folder = path.parent().unwrap_or(Path::new(""));
                 let model = Model::load(&folder.join(name))?;
                 model.hinges_only("studies are of robots on hinges")?;
+                model.planar_only("studies are of planar chains (`gains` takes both)")?;
                 Study::of(model)
             }
             _ => Study::paper()?,

@@ -20,7 +20,7 @@ use super::stationary::{Stationary, stationary};
 use super::system::{Continuous, Discrete};
 use super::zeros::transmission_zeros;
 use super::zoh;
-use crate::model::Model;
+use crate::model::{JointNames, Model};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// A finished design.
@@ -28,6 +28,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 pub struct Design {
     /// The model's name.
     pub model: String,
+    /// What its joints are called, of a robot in space.
+    pub names: JointNames,
     /// The states that K multiplies.
     pub states: Vec<Signal>,
     /// The inputs it makes.
@@ -90,6 +92,7 @@ impl Design {
     pub fn of(model: &Model, request: &Request) -> Result<Design, DesignError> {
         let slide = model.joints.iter().position(|joint| joint.slide.is_some());
         if let (Some(joint), true) = (slide, request.sensors.is_some()) {
+            let joint = JointNames::of(model).label(joint);
             return Err(DesignError::SlideFiltered { joint });
         }
         let Linearisation {
@@ -99,7 +102,7 @@ impl Design {
         } = linearise(model, &request.pose_rad)?;
         let ranges = Ranges {
             state: request.state_ranges(plant.a.nrows())?,
-            input: request.input_ranges(model)?,
+            input: request.input_ranges(model, &u0)?,
         };
         let integral = request.integral.as_ref();
         let integral = integral.map(|weight| Integral::of(model, weight));
@@ -116,6 +119,7 @@ impl Design {
         let sums = integral.as_ref().map_or(0, |it| it.joints.len());
         let mut design = Design {
             model: model.name.clone(),
+            names: JointNames::of(model),
             states: states(model, &inputs, integral.as_ref(), delayed),
             x0: point(&request.pose_rad, sums, &u0, delayed),
             integral,

@@ -1,6 +1,7 @@
 //! Why no design follows from a model, weights and timing that are well formed.
 
 use super::eigen::Mode;
+use super::pose_text::PoseReason;
 use super::signal::Signal;
 use crate::error::Error;
 use std::fmt;
@@ -13,27 +14,22 @@ mod remedy;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum DesignError {
-    #[error("`{model}` is a robot in space, and gains are designed for planar chains")]
-    InSpace { model: String },
     #[error("no joint of `{model}` is driven")]
     NothingDriven { model: String },
     #[error("the masses and inertias of `{model}` do not make a positive inertia")]
     NoInertia { model: String },
     #[error("the drives differ in delay: {first_s} s and {other_s} s")]
     DelaysDiffer { first_s: f64, other_s: f64 },
-    #[error("the pose has {angles} angles, the model {joints} joints")]
-    PoseSize { angles: usize, joints: usize },
-    #[error("the pose has an angle of {0}")]
-    PoseAngle(f64),
+    #[error(transparent)]
+    Pose(#[from] PoseReason),
     #[error(
-        "joint {} is passive and {torque_nm:.3e} {} would have to hold it at {angle_rad} {}: \
+        "joint {joint} is passive and {torque_nm:.3e} {} would have to hold it at {angle_rad} {}: \
          the pose is no equilibrium",
-        joint + 1,
         units[2],
         units[0]
     )]
     NoEquilibrium {
-        joint: usize,
+        joint: String,
         torque_nm: f64,
         angle_rad: f64,
         units: [&'static str; 3],
@@ -41,17 +37,27 @@ pub enum DesignError {
     #[error("no equilibrium was found near this pose")]
     EquilibriumNotFound,
     #[error(
-        "joint {} needs {torque_nm:.3} {} to hold the pose, more than its drive can give",
-        joint + 1,
+        "joint {joint} needs {torque_nm:.3} {} to hold the pose, more than its drive can give",
         units[2]
     )]
     DriveTooWeak {
-        joint: usize,
+        joint: String,
         torque_nm: f64,
         units: [&'static str; 3],
     },
-    #[error("joint {} slides, and the filter measures angles and a gyro", joint + 1)]
-    SlideFiltered { joint: usize },
+    #[error(
+        "{} of {held:.4} {} holds the pose, and its limit is {limit} {}",
+        input.name,
+        input.unit,
+        input.unit
+    )]
+    HeldBeyondLimit {
+        input: Signal,
+        held: f64,
+        limit: f64,
+    },
+    #[error("joint {joint} slides, and the filter measures angles and a gyro")]
+    SlideFiltered { joint: String },
 
     #[error("a sampling time of {0} s")]
     SamplingTime(f64),
@@ -298,8 +304,8 @@ impl DesignError {
         use DesignError as E;
         matches!(
             self,
-            E::PoseSize { .. }
-                | E::PoseAngle(_)
+            E::Pose(_)
+                | E::HeldBeyondLimit { .. }
                 | E::SamplingTime(_)
                 | E::Delay { .. }
                 | E::DiagonalSize { .. }

@@ -5,7 +5,7 @@
 //! gravity balances them. (Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 4.5.)
 
 use super::error::DesignError;
-use super::signal::Signal;
+use super::signal::{Signal, of_joint};
 use super::system::Discrete;
 use super::weight::Weight;
 use crate::model::Model;
@@ -115,7 +115,7 @@ impl Integral {
     /// The sums as signals.
     pub(super) fn signals(&self, model: &Model) -> Vec<Signal> {
         let signal = |joint: &usize| Signal {
-            name: format!("int_q{}", joint + 1),
+            name: of_joint("int_q", model, *joint),
             unit: match model.joints[*joint].slide {
                 Some(_) => "m s",
                 None => "rad s",

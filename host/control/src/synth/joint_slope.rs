@@ -5,7 +5,7 @@ use super::omitted::OmittedEffect;
 use crate::effects::{
     AtRest, CONTROLS, DriveState, EFFECTS, Effect, JointState, MemoryCell, Site, Slope, StepState,
 };
-use crate::model::{Drive, EffectInstance, Model};
+use crate::model::{Drive, EffectInstance, JointNames, Model};
 
 /// Most steps of Newton's iteration for the duty that holds a torque.
 const MOST_STEPS: usize = 50;
@@ -35,6 +35,7 @@ pub(super) struct HeldJoint {
 
 /// One joint and what acts on it.
 pub(super) struct JointAt<'a> {
+    model: &'a Model,
     joint: usize,
     /// Of its place, speed and torque.
     units: [&'static str; 3],
@@ -61,6 +62,7 @@ impl<'a> JointAt<'a> {
         effects
             .retain(|e| !matches!(e.effect.info().site, Site::Body | Site::Timing) && !vanishes(e));
         JointAt {
+            model,
             joint,
             units: model.joints[joint].units(),
             drive: &model.joints[joint].drive,
@@ -85,6 +87,11 @@ impl<'a> JointAt<'a> {
             }
         }
         slopes
+    }
+
+    /// What messages call it.
+    fn label(&self) -> String {
+        JointNames::of(self.model).label(self.joint)
     }
 
     fn at_rest(&self) -> AtRest {
@@ -139,7 +146,7 @@ impl<'a> JointAt<'a> {
             None
         } else {
             return Err(DesignError::NoEquilibrium {
-                joint: self.joint,
+                joint: self.label(),
                 torque_nm: needed_nm,
                 angle_rad: self.pose_rad,
                 units: self.units,
@@ -176,7 +183,7 @@ impl<'a> JointAt<'a> {
             at.duty += off_nm / slope.per_duty;
         }
         Err(DesignError::DriveTooWeak {
-            joint: self.joint,
+            joint: self.label(),
             torque_nm: needed_nm,
             units: self.units,
         })

@@ -51,13 +51,13 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearisation, Desig
     let diagonal = |of: fn(&JointSlope) -> f64| {
         DMatrix::from_diagonal(&DVector::from_iterator(n, point.joints.iter().map(of)))
     };
-    let per_rad = diagonal(|s| s.per_rad) - point.equations.gravity_slope(&point.relative_rad)
+    let per_rad = diagonal(|s| s.per_rad) - &point.rigid.gravity_slope
         + diagonal(|s| s.per_pose_rad) * &convention;
     let mut per_input = DMatrix::zeros(n, driven.len());
     for (input, &joint) in driven.iter().enumerate() {
         per_input[(joint, input)] = point.joints[joint].per_input;
     }
-    let mass = point.equations.mass(&point.relative_rad);
+    let mass = point.rigid.mass.clone();
     let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
         model: model.name.clone(),
     })?;

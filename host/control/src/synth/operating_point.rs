@@ -4,22 +4,20 @@
 use super::error::DesignError;
 use super::joint_slope::{JointAt, JointSlope};
 use super::omitted::OmittedEffect;
-use super::pose::check_size;
-use crate::dynamics::EquationsOfMotion;
+use super::pose_text::check_pose;
+use super::rigid::{Rigid, RigidAtPose};
 use crate::effects::{Scope, Site};
 use crate::model::{EffectInstance, Model};
 
 /// Share of the largest gravity torque by which a passive joint may miss its equilibrium.
-const SLACK: f64 = 1e-6;
+pub(super) const SLACK: f64 = 1e-6;
 
 /// A pose with the inputs that hold it, and the first-order change of every joint's torque.
 #[derive(Debug, Clone)]
 pub(super) struct OperatingPoint {
     /// Inputs of the driven joints that hold the pose, each in the SI unit of its drive.
     pub inputs: Vec<f64>,
-    /// Relative angles, the first from hanging, rad.
-    pub relative_rad: Vec<f64>,
-    pub equations: EquationsOfMotion,
+    pub rigid: RigidAtPose,
     /// One per joint.
     pub joints: Vec<JointSlope>,
     /// Effects without a derivative here; they count neither in `inputs` nor in `joints`.
@@ -34,41 +32,25 @@ impl OperatingPoint {
     /// A pose that is no equilibrium of the smooth effects, or that asks more of a drive than it
     /// can give.
     pub fn of(model: &Model, pose_rad: &[f64]) -> Result<OperatingPoint, DesignError> {
-        check_size(model, pose_rad)?;
+        check_pose(model, pose_rad)?;
         let relative_rad = model.relative_rad(pose_rad);
-        let equations = equations(model);
-        let gravity_nm = equations.gravity(&relative_rad);
-        let mut level_rad = relative_rad.clone();
-        if let Some(hinge) = model.joints.iter().position(|joint| joint.slide.is_none()) {
-            level_rad[hinge] += std::f64::consts::FRAC_PI_2;
-        }
-        let largest_nm = gravity_nm.amax().max(equations.gravity(&level_rad).amax());
+        let rigid = Rigid::of(model);
+        let slack_nm = SLACK * rigid.largest_gravity_nm(&relative_rad);
         let mut point = OperatingPoint {
             inputs: Vec::new(),
-            relative_rad,
-            equations,
+            rigid: rigid.at(&relative_rad),
             joints: Vec::new(),
             omitted: of_base(model).collect(),
         };
-        for (joint, &gravity_nm) in gravity_nm.iter().enumerate() {
-            let at = JointAt::new(model, joint, &point.relative_rad, pose_rad);
-            let held = at.held(gravity_nm, SLACK * largest_nm)?;
+        for joint in 0..model.link_count() {
+            let at = JointAt::new(model, joint, &relative_rad, pose_rad);
+            let held = at.held(point.rigid.gravity_nm[joint], slack_nm)?;
             point.inputs.extend(held.input);
             point.joints.push(held.slope);
             point.omitted.extend(held.omitted);
         }
         Ok(point)
     }
-}
-
-/// The equations of motion of a model's chain, body effects included, gears that give as if they
-/// were rigid.
-pub(super) fn equations(model: &Model) -> EquationsOfMotion {
-    let mut model = model.clone();
-    let rigid: Vec<_> = model.effects.iter().filter_map(|e| e.rigid()).collect();
-    model.effects.extend(rigid);
-    let rig = model.rig(false);
-    EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)
 }
 
 /// Effects by which the base gives way: states that the equations do not have.

@@ -2,10 +2,11 @@
 
 use super::cost_weights::CostWeights;
 use super::error::DesignError;
+use super::linearise::linearise;
 use super::quantise::{Format, positive};
-use super::signal::default_limit;
+use super::signal::{default_limit, input};
 use super::weight::Weight;
-use crate::model::{Model, upright};
+use crate::model::{Model, default_pose};
 use crate::sim::closed_loop::Velocity;
 
 /// What is asked for.
@@ -32,12 +33,12 @@ pub struct Request {
 }
 
 impl Request {
-    /// Upright; weights by Bryson's rule; every 10 ms, the inputs as late as the model has them;
+    /// At the [`default_pose`]; weights by Bryson's rule; every 10 ms, the inputs as late as the model has them;
     /// departures within 0.5 rad and 10 rad/s; words of 16 bits.
     pub fn standard(model: &Model) -> Request {
         let joints = model.link_count();
         Request {
-            pose_rad: upright(model),
+            pose_rad: default_pose(model),
             weights: CostWeights::BRYSON,
             integral: None,
             time: Time::Sampled {
@@ -59,10 +60,12 @@ impl Request {
     /// Q and R for `model`, as two weights.
     ///
     /// # Errors
-    /// Ranges for another number of states or inputs.
+    /// Ranges for another number of states or inputs; a pose that nothing holds.
     pub fn weights_for(&self, model: &Model) -> Result<[Weight; 2], DesignError> {
         let states = self.state_ranges(2 * model.link_count())?;
-        Ok(self.weights.resolved(&states, &self.input_ranges(model)?))
+        let held = linearise(model, &self.pose_rad)?.inputs;
+        let inputs = self.input_ranges(model, &held)?;
+        Ok(self.weights.resolved(&states, &inputs))
     }
 
     /// Largest departures of so many states, SI.
@@ -72,15 +75,33 @@ impl Request {
         Ok(ranges)
     }
 
-    /// Largest inputs of the driven joints of `model`, SI: those asked for, else the drives' own.
-    pub(super) fn input_ranges(&self, model: &Model) -> Result<Vec<f64>, DesignError> {
+    /// Largest inputs of the driven joints of `model`, whose pose these inputs hold, SI: those
+    /// asked for, else the drives' own.
+    pub(super) fn input_ranges(
+        &self,
+        model: &Model,
+        held: &[f64],
+    ) -> Result<Vec<f64>, DesignError> {
         let driven = model.driven_joints();
-        let Some(range) = &self.input_range else {
-            let own = driven.iter().map(|&joint| default_limit(model, joint));
-            return Ok(own.collect());
+        let ranges = match &self.input_range {
+            Some(range) => range.diagonal("the range of inputs", driven.len())?,
+            None => {
+                let joints = driven.iter().zip(held);
+                joints
+                    .map(|(&joint, held)| default_limit(model, joint, *held))
+                    .collect()
+            }
         };
-        let ranges = range.diagonal("the range of inputs", driven.len())?;
         positive("range", "input", &ranges, driven.len())?;
+        for ((limit, held), &joint) in ranges.iter().zip(held).zip(&driven) {
+            if held.abs() >= *limit {
+                return Err(DesignError::HeldBeyondLimit {
+                    input: input(model, joint),
+                    held: *held,
+                    limit: *limit,
+                });
+            }
+        }
         Ok(ranges)
     }
 }

@@ -72,8 +72,8 @@ pub fn stiffness(model: &Model, design: &Design) -> Result<Stiffness, DesignErro
 pub fn torque_inputs(model: &Model, pose_rad: &[f64]) -> Result<DMatrix<f64>, DesignError> {
     let n = model.link_count();
     let point = OperatingPoint::of(model, pose_rad)?;
-    let mass = point.equations.mass(&point.relative_rad);
-    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
+    let mass = point.rigid.mass.cholesky();
+    let mass = mass.ok_or_else(|| DesignError::NoInertia {
         model: model.name.clone(),
     })?;
     let convention = match model.angles {

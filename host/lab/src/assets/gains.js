@@ -16,6 +16,8 @@ const value = (name) => {
 const asked = () => ({
   states: value("states"), speeds: value("speeds"), ts_s: value("ts_s"),
   delay_s: $("own-delay").checked ? null : value("delay_s"),
+  // Of a robot in space.
+  pose: $("pose") ? $("pose").value : null,
 });
 let poles = [], wanted = false, busy = false;
 
@@ -76,7 +78,7 @@ const show = (said) => {
   group.show(time, [
     { title: "Angles from the pose", unit: said.degrees ? "deg" : "mrad", scale: said.degrees ?
       180 / Math.PI : 1e3, curves: of(said.response.angle_rad,
-      (i) => `joint ${i + 1}`) },
+      (i) => said.joints[i]) },
     { title: "Commands", unit: "", small: true, curves: of(said.response.command, (i) =>
       said.inputs[i]) },
   ]);
@@ -122,7 +124,8 @@ const ask = async () => {
   for (const name of sliders) $(`${name}-shown`).textContent = value(name);
   const query = asked();
   const text = new URLSearchParams({ states: query.states, speeds: query.speeds, ts_s: query.ts_s,
-    ...(query.delay_s === null ? {} : { delay_s: query.delay_s }) });
+    ...(query.delay_s === null ? {} : { delay_s: query.delay_s }),
+    ...(query.pose === null ? {} : { pose: query.pose }) });
   for (const link of document.querySelectorAll("[data-file]")) link.href =
     `${base}/gains-file/${link.dataset.file}?${text}`;
   if (busy) return;
@@ -134,6 +137,7 @@ const ask = async () => {
   busy = false;
 };
 for (const name of sliders) $(name).addEventListener("input", ask);
+if ($("pose")) $("pose").addEventListener("change", ask);
 $("own-delay").addEventListener("change", () => { $("delay_s").disabled = $("own-delay").checked;
   ask(); });
 onLook(drawPoles);

@@ -1,6 +1,7 @@
 //! Gains: weights about those by the ranges, sampling time and delay as sliders.
 
 use super::{frame, lacking};
+use crate::model::{Model, default_pose};
 use crate::reply::LabError;
 use crate::session::LabSession;
 use maud::{Markup, html};
@@ -19,7 +20,7 @@ pub fn page(session: &LabSession) -> Result<Markup, LabError> {
     let evaluation = session.known_evaluation(&saved);
     let (script, body) = match session.model(&saved)? {
         Some(model) if model.driven_joints().is_empty() => ("lab.js", undriven(session.number)),
-        Some(_) => ("gains.js", shown()),
+        Some(model) => ("gains.js", shown(&model)),
         None => ("lab.js", lacking(session.number, &saved)),
     };
     Ok(frame::page(
@@ -45,15 +46,38 @@ fn undriven(number: u32) -> Markup {
     }
 }
 
-fn shown() -> Markup {
+/// The pose of a robot in space: which joints, and where they are.
+fn pose(model: &Model) -> Markup {
+    let Some(robot) = &model.robot else {
+        return html! {};
+    };
+    let pose = default_pose(model);
+    let joints = robot.joints.iter().zip(&pose);
+    let said: Vec<String> = joints.map(|(name, at)| format!("{name}={at}")).collect();
+    html! {
+        div.wide-slider {
+            label for="pose" { "Pose, rad (slides: m)" }
+            input #pose type="text" value=(said.join(", ")) spellcheck="false" autocomplete="off";
+            output {}
+        }
+    }
+}
+
+fn shown(model: &Model) -> Markup {
+    let title = if model.is_in_space() {
+        "Gains that hold its pose"
+    } else {
+        "Gains that hold it upright"
+    };
     html! {
         section {
-            h1 { "Gains that hold it upright" }
+            h1 { (title) }
             p.lead { "The linear-quadratic regulator of the model in force. The response is \
-                      simulated with every effect that the model has learned, from a lean of 20 \
-                      mrad (1.1 deg). At 1 each state and input weighs one over the square of its \
+                      simulated with every effect that the model has learned, from the first joint \
+                      20 mrad (1.1 deg) off. At 1 each state and input weighs one over the square of its \
                       largest departure (Bryson's rule: 0.5 rad, 10 rad/s, the drive's own limit); \
                       the first two sliders multiply that." }
+            (pose(model))
             @for (name, title, low, high, at) in SLIDERS {
                 div.wide-slider {
                     label for=(name) { (title) }

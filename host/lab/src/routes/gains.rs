@@ -11,7 +11,9 @@ use crate::server::LabState;
 use crate::session::{LabSession, aside, in_degrees};
 use crate::study::{left_out, response, verify};
 use crate::synth::export::{self, Provenance};
-use crate::synth::{CostWeights, Design, LoopFigures, Request, Time, rows};
+use crate::synth::{
+    CostWeights, Design, LoopFigures, OmittedEffect, PoseText, Request, Time, rows,
+};
 use axum::Json;
 use axum::extract::{Path, Query, State};
 use serde::Deserialize;
@@ -31,7 +33,7 @@ pub(super) async fn show(State(lab): State<Arc<LabState>>, Path(number): Path<u3
 }
 
 /// What is asked of the design.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 pub(super) struct GainsAsked {
     /// Weight of the states, times that by their ranges.
     states: f64,
@@ -41,10 +43,12 @@ pub(super) struct GainsAsked {
     ts_s: f64,
     /// Delay of the inputs, s; the model's own without.
     delay_s: Option<f64>,
+    /// The pose, as after `--pose`; the model's default without.
+    pose: Option<String>,
 }
 
 impl GainsAsked {
-    fn request(self, model: &Model) -> Result<Request> {
+    fn request(&self, model: &Model) -> Result<Request> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         if ![self.states, self.speeds, self.ts_s]
             .into_iter()
@@ -55,7 +59,16 @@ impl GainsAsked {
                 "raise it",
             ));
         }
+        let standard = Request::standard(model);
+        let pose_rad = match self.pose() {
+            Some(pose) => pose
+                .parse::<PoseText>()
+                .map_err(|remedy| Error::usage(format!("the pose is `{pose}`"), remedy))?
+                .resolve(model)?,
+            None => standard.pose_rad.clone(),
+        };
         Ok(Request {
+            pose_rad,
             weights: CostWeights::ByRange {
                 states: self.states,
                 speeds: self.speeds,
@@ -64,17 +77,27 @@ impl GainsAsked {
                 ts_s: self.ts_s,
                 delay_s: self.delay_s,
             },
-            ..Request::standard(model)
+            ..standard
         })
     }
 
-    fn options(self, model: &Model) -> Result<String> {
+    /// A pose that is asked for.
+    fn pose(&self) -> Option<&str> {
+        let pose = self.pose.as_deref().map(str::trim);
+        pose.filter(|pose| !pose.is_empty())
+    }
+
+    fn options(&self, model: &Model) -> Result<String> {
         let delay = self.delay_s.map(|delay| format!(" --delay {delay}"));
         let [q, r] = self.request(model)?.weights_for(model)?;
         Ok(format!(
-            " --q {q} --r {r} --ts {}{}",
+            " --q {q} --r {r} --ts {}{}{}",
             self.ts_s,
-            delay.unwrap_or_default()
+            delay.unwrap_or_default(),
+            self.pose().map_or_else(String::new, |pose| {
+                let pose: String = pose.split_whitespace().collect();
+                format!(" --pose {pose}")
+            })
         ))
     }
 }
@@ -87,13 +110,13 @@ pub(super) async fn design(
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let (model, made) = model(&session, asked)?;
-        Ok(reply(&designed(&model, &made, asked)?))
+        let (model, made) = model(&session, &asked)?;
+        Ok(reply(&designed(&model, &made, &asked)?))
     })
     .await
 }
 
-fn model(session: &LabSession, asked: GainsAsked) -> Result<(Model, Provenance), LabError> {
+fn model(session: &LabSession, asked: &GainsAsked) -> Result<(Model, Provenance), LabError> {
     let saved = session.saved();
     let model = session.model(&saved)?.ok_or(LabError::NotFound("model"))?;
     let toml = saved.step().map_or("", |step| &step.toml);
@@ -105,7 +128,7 @@ fn model(session: &LabSession, asked: GainsAsked) -> Result<(Model, Provenance),
     Ok((model, made))
 }
 
-fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value> {
+fn designed(model: &Model, made: &Provenance, asked: &GainsAsked) -> Result<Value> {
     let request = asked.request(model)?;
     let design = Design::of(model, &request)?;
     let mut start = vec![0.0; model.link_count()];
@@ -127,10 +150,13 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
         "poles": poles.collect::<Vec<_>>(),
         "k": rows(&design.gains.k),
         "states": design.states.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
+        "joints": (0..model.link_count())
+            .map(|joint| format!("joint {}", design.names.label(joint)))
+            .collect::<Vec<_>>(),
         "inputs": design.inputs.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
         "fixed": fixed,
         "margins": margins_json(figures.as_ref())["margins"],
-        "omitted": omitted.map(|o| o.effect.info().title).collect::<Vec<_>>(),
+        "omitted": omitted.map(|o| omitted_text(o, &design)).collect::<Vec<_>>(),
         "degrees": in_degrees(model),
         "response": {
             "time_s": response.time_s,
@@ -139,6 +165,14 @@ fn designed(model: &Model, made: &Provenance, asked: GainsAsked) -> Result<Value
         },
         "command": made.command,
     }))
+}
+
+fn omitted_text(omitted: &OmittedEffect, design: &Design) -> String {
+    let title = omitted.effect.info().title;
+    match omitted.joint {
+        Some(joint) => format!("{title} at joint {}", design.names.label(joint)),
+        None => title.to_string(),
+    }
 }
 
 /// What the simulated loop does with every effect of the model, in the words of `handstand gains`;
@@ -150,12 +184,12 @@ pub(super) async fn verified(
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let (model, _) = model(&session, asked)?;
+        let (model, _) = model(&session, &asked)?;
         let request = asked.request(&model)?;
         let design = Design::of(&model, &request).map_err(Error::from)?;
         let left_out = left_out(&model, &model, &design);
         let verified = aside(|| verify(&model, &design, &request, &left_out, &|| ()))?;
-        let text = verification_text(&verified, model.slides());
+        let text = verification_text(&verified, &model);
         let lines: Vec<&str> = text.lines().filter(|line| !line.is_empty()).collect();
         Ok(reply(&json!({
             "lines": lines,
@@ -175,7 +209,7 @@ pub(super) async fn file(
 ) -> Answer {
     let session = session(&lab, number)?;
     blocking(move || {
-        let (model, made) = model(&session, asked)?;
+        let (model, made) = model(&session, &asked)?;
         let design = Design::of(&model, &asked.request(&model)?).map_err(Error::from)?;
         let fixed = design.fixed.as_ref();
         let fixed = fixed.ok_or(LabError::NotFound("fixed-point law"))?;

@@ -1,5 +1,5 @@
 //! The rigid planar chain: equations of motion by recursion in O(n), and in closed form; and the
-//! tree in space, by recursion. The tests hold them to each other.
+//! tree in space, likewise. The tests hold them to each other.
 
 mod articulated;
 mod chain;
@@ -21,4 +21,4 @@ pub use equations::EquationsOfMotion;
 pub use lanes::{Lane, Lanes};
 pub use runge_kutta::{RungeKutta, runge_kutta};
 pub use slide_axis::SlideAxis;
-pub use spatial::{SpatialEquations, SpatialLink, SpatialTree, SpatialWorkspace};
+pub use spatial::{SpatialEquations, SpatialLink, SpatialTree, SpatialWorkspace, TreeAtPose};

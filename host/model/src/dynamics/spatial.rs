@@ -1,9 +1,11 @@
 //! A tree of rigid links in space: hinges and slides about any axis, on a fixed base.
 
+mod at_pose;
 mod carried;
 mod equations;
 mod small;
 
+pub use at_pose::TreeAtPose;
 pub use equations::{SpatialEquations, SpatialWorkspace};
 
 use nalgebra::{Isometry3, Matrix3, Point3, Unit, UnitQuaternion, Vector3};

@@ -35,6 +35,12 @@ impl JointNames {
         named(&self.joints, number)
     }
 
+    /// What a text calls a joint, counted from 0: its name, or its number from 1.
+    pub fn label(&self, joint: usize) -> String {
+        self.joint(joint + 1)
+            .map_or_else(|| (joint + 1).to_string(), str::to_string)
+    }
+
     /// A text with names; of one that has them already, the same.
     pub fn in_text(&self, text: &str) -> String {
         if self.joints.is_empty() && self.links.is_empty() {

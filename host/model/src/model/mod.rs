@@ -37,7 +37,7 @@ pub use limits::Limits;
 pub use parse::STEP_S;
 pub use path::ParameterPath;
 pub use path_reason::PathReason;
-pub use pose::{hanging, upright};
+pub use pose::{default_pose, hanging, upright};
 pub use rate_sensor::RateSensor;
 pub use reason::ModelReason;
 pub use robot::Robot;

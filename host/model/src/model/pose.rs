@@ -2,12 +2,27 @@
 
 use super::{Angles, Joint, Model};
 
-/// All links straight up, one angle per joint, rad.
+/// The pose that is held where none is asked for: all links straight up; of a robot in space every
+/// joint at 0, or in the middle of its range where that does not hold 0. One angle per joint, rad,
+/// or m where it slides.
+pub fn default_pose(model: &Model) -> Vec<f64> {
+    if !model.is_in_space() {
+        return upright(model);
+    }
+    let at = |joint: usize| match model.range(joint) {
+        Some((low, high)) if !(low..=high).contains(&0.0) => f64::midpoint(low, high),
+        _ => 0.0,
+    };
+    (0..model.link_count()).map(at).collect()
+}
+
+/// All links straight up, one angle per joint, rad; of a robot in space, which knows no such pose,
+/// every joint at 0.
 pub fn upright(model: &Model) -> Vec<f64> {
     straight(model, std::f64::consts::PI)
 }
 
-/// All links straight down, one angle per joint, rad.
+/// All links straight down, one angle per joint, rad; of a robot in space every joint at 0.
 pub fn hanging(model: &Model) -> Vec<f64> {
     straight(model, 0.0)
 }
@@ -40,6 +55,9 @@ impl Model {
 
 /// All links that turn at an angle from hanging, rad, and joints that slide at 0.
 fn straight(model: &Model, from_hanging_rad: f64) -> Vec<f64> {
+    if model.is_in_space() {
+        return vec![0.0; model.link_count()];
+    }
     if model.angles == Angles::Absolute {
         let first = from_hanging_rad - model.angle_zero.from_hanging_rad();
         return vec![first; model.link_count()];

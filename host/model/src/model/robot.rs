@@ -28,6 +28,9 @@ pub struct Robot {
     pub joints: Vec<String>,
     /// What it calls the link behind each joint.
     pub links: Vec<String>,
+    /// Between which coordinates its end stops let each joint move, rad or m, where the file says
+    /// both. Nothing here stops at them.
+    pub ranges: Vec<Option<(f64, f64)>>,
 }
 
 impl Robot {
@@ -80,6 +83,7 @@ impl Robot {
             tree: found.tree,
             joints: found.joints,
             links: found.links,
+            ranges: found.ranges,
         }))
     }
 
@@ -161,6 +165,28 @@ impl Model {
                 ),
             )),
         }
+    }
+
+    /// Between which coordinates a joint's end stops let it move, rad or m; none where its robot's
+    /// file has no such range, and of a planar chain.
+    pub fn range(&self, joint: usize) -> Option<(f64, f64)> {
+        *self.robot.as_ref()?.ranges.get(joint)?
+    }
+
+    /// The mass that moves with a joint, kg.
+    pub fn carried_kg(&self, joint: usize) -> f64 {
+        let Some(robot) = &self.robot else {
+            return self.links[joint..].iter().map(|link| link.mass_kg).sum();
+        };
+        let mut moves = vec![false; self.links.len()];
+        let mut carried_kg = 0.0;
+        for (index, link) in robot.tree.links.iter().enumerate() {
+            moves[index] = index == joint || link.parent.is_some_and(|parent| moves[parent]);
+            if moves[index] {
+                carried_kg += self.links[index].mass_kg;
+            }
+        }
+        carried_kg
     }
 
     /// The joint that a robot in space calls so, counted from 0.

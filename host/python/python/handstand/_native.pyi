@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, ClassVar, Literal, Protocol, TypeAlias, final, type_check_only
 
@@ -315,7 +315,7 @@ def gains(
     r: ArrayLike | None = None,
     ts_s: float | None = 0.01,
     delay_s: float | None = None,
-    pose_rad: ArrayLike | None = None,
+    pose_rad: ArrayLike | Mapping[str, float] | None = None,
     balance: bool = False,
     position_step_rad: float | None = None,
     speeds: Literal["true", "difference"] = "true",

@@ -65,10 +65,11 @@ fn observer_known(model: &Model, board: &Board) -> Result<DesignModel> {
 /// The plan that makes the CM-5 execute a design.
 ///
 /// # Errors
-/// A design that the firmware has no law for, values that do not fit its words, or joints that
-/// slide.
+/// A design that the firmware has no law for, values that do not fit its words, joints that slide,
+/// or a robot in space.
 pub fn plan(model: &Model, law: BoardLaw, board: &Board) -> Result<Plan> {
     model.hinges_only("the board's plans are for servos that turn")?;
+    model.planar_only("the CM-5 balances planar chains")?;
     match law {
         BoardLaw::State(design) => state::plan(model, design, board),
         BoardLaw::Observer(machine) => {

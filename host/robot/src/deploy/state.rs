@@ -111,9 +111,11 @@ fn shift_to_upright(design: &mut Design, model: &Model) {
     }
 }
 
-/// Refuse absolute angles, for servos measure relative ones, and joints that slide.
+/// Refuse absolute angles, for servos measure relative ones, joints that slide, and robots in
+/// space.
 pub(super) fn relative(model: &Model) -> Result<()> {
     model.hinges_only("the board's plans are for servos that turn")?;
+    model.planar_only("the CM-5 balances planar chains")?;
     match model.angles {
         Angles::Relative => Ok(()),
         Angles::Absolute => Err(Error::design(

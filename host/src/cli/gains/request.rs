@@ -4,24 +4,15 @@ use super::super::weight_arg::WeightArg;
 use super::super::{Console, page};
 use super::GainsArgs;
 use handstand::fitting::effect_ids;
-use handstand::model::Model;
+use handstand::model::{JointNames, Model};
 use handstand::sim::closed_loop::Velocity;
 use handstand::synth::export::Provenance;
 use handstand::synth::{
-    CostWeights, Format, Readings, Request, Sensors, Time, Weight, balanced, upright,
+    CostWeights, Format, Readings, Request, Sensors, Time, Weight, balanced, default_pose,
 };
 use handstand::{Error, Result, output};
 use handstand_shared::raw::Position;
 use std::path::Path;
-
-/// Where the robot is balanced.
-#[derive(Debug, Clone)]
-pub(super) enum Pose {
-    /// All links straight up.
-    Upright,
-    /// Angles of the joints, rad.
-    Angles(Vec<f64>),
-}
 
 /// What the simulated law takes for speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -39,17 +30,6 @@ impl SpeedsArg {
             SpeedsArg::Difference => Velocity::Difference,
         }
     }
-}
-
-/// `--pose`.
-pub(super) fn pose(text: &str) -> Result<Pose, String> {
-    if text == "upright" {
-        return Ok(Pose::Upright);
-    }
-    let angles: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    angles
-        .map(Pose::Angles)
-        .map_err(|_| "give angles in rad between commas, or `upright`".into())
 }
 
 /// The model without the effects left out, what is asked of its design, and where it came from.
@@ -71,10 +51,8 @@ pub(in crate::cli) fn requested(
     for id in leave_out(&mut model, &args.without)? {
         console.say(&format!("designed without {id}; the simulated loop has it"));
     }
-    let (request, balance) = request(args, &model)?;
-    if let Some(said) = balance {
-        console.say(&said);
-    }
+    let pose_rad = posed(args, &model, console)?;
+    let request = request(args, &model, pose_rad)?;
     Ok((model, request, provenance(&args.model, console)?))
 }
 
@@ -85,7 +63,9 @@ fn leave_out(model: &mut Model, without: &[String]) -> Result<Vec<String>> {
         let before = model.effects.len();
         model.effects.retain(|e| e.effect.info().id != id);
         if model.effects.len() == before {
-            let held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
+            let mut held: Vec<&str> = model.effects.iter().map(|e| e.effect.info().id).collect();
+            held.sort_unstable();
+            held.dedup();
             let held = match held.as_slice() {
                 [] => "none at all".to_string(),
                 held => held.join(", "),
@@ -99,23 +79,60 @@ fn leave_out(model: &mut Model, without: &[String]) -> Result<Vec<String>> {
     Ok(without)
 }
 
-/// The request, and where the pose was moved to if it was.
-fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)> {
+/// The pose that is asked for, and what of it the options do not say, on stderr.
+fn posed(args: &GainsArgs, model: &Model, console: &Console) -> Result<Vec<f64>> {
     let mut pose_rad = match &args.pose {
-        Pose::Upright => upright(model),
-        Pose::Angles(angles) => angles.clone(),
+        Some(pose) => {
+            let pose_rad = pose.resolve(model)?;
+            let open = pose.left_open(model);
+            if !open.is_empty() {
+                let open = joints_at(model, &pose_rad, &open);
+                console.say(&format!("not named by --pose: {open}"));
+            }
+            pose_rad
+        }
+        None => {
+            let pose_rad = default_pose(model);
+            if model.is_in_space() {
+                let all: Vec<usize> = (0..pose_rad.len()).collect();
+                let all = joints_at(model, &pose_rad, &all);
+                console.say(&format!("no --pose: {all}"));
+            }
+            pose_rad
+        }
     };
-    let mut moved = None;
     if args.balance {
         pose_rad = balanced(model, &pose_rad)?;
-        let said: Vec<String> = pose_rad.iter().map(|angle| format!("{angle:.6}")).collect();
-        let mut units: Vec<&str> = model.joints.iter().map(|joint| joint.units()[0]).collect();
-        if !model.slides() {
-            units.truncate(1);
-        }
-        let (said, units) = (said.join(", "), units.join(", "));
-        moved = Some(format!("balanced at q = [{said}] {units}"));
+        let said = if model.is_in_space() {
+            let all: Vec<usize> = (0..pose_rad.len()).collect();
+            format!("balanced at {}", joints_at(model, &pose_rad, &all))
+        } else {
+            let said: Vec<String> = pose_rad.iter().map(|angle| format!("{angle:.6}")).collect();
+            let mut units: Vec<&str> = model.joints.iter().map(|joint| joint.units()[0]).collect();
+            if !model.slides() {
+                units.truncate(1);
+            }
+            let (said, units) = (said.join(", "), units.join(", "));
+            format!("balanced at q = [{said}] {units}")
+        };
+        console.say(&said);
     }
+    Ok(pose_rad)
+}
+
+/// These joints, counted from 0, by name or number, and where the pose has them.
+fn joints_at(model: &Model, pose_rad: &[f64], joints: &[usize]) -> String {
+    let names = JointNames::of(model);
+    let said = joints.iter().map(|&joint| {
+        let (at, unit) = (pose_rad[joint] + 0.0, model.joints[joint].units()[0]);
+        let at = format!("{at:.6}");
+        let at = at.trim_end_matches('0').trim_end_matches('.');
+        format!("{} {at} {unit}", names.label(joint))
+    });
+    said.collect::<Vec<String>>().join(", ")
+}
+
+fn request(args: &GainsArgs, model: &Model, pose_rad: Vec<f64>) -> Result<Request> {
     let time = if args.continuous {
         Time::Continuous
     } else {
@@ -165,7 +182,7 @@ fn request(args: &GainsArgs, model: &Model) -> Result<(Request, Option<String>)>
             ..standard.format
         },
     };
-    Ok((request, moved))
+    Ok(request)
 }
 
 fn provenance(model: &Path, console: &Console) -> Result<Provenance> {

@@ -101,6 +101,42 @@ fn the_page_says_what_the_command_says() {
     }));
 }
 
+/// A robot in space is held at a pose that the page asks for.
+#[test]
+fn a_robot_in_space_has_a_pose_to_fill_in() {
+    let bench = Bench::new();
+    bench.put("pendulum.urdf", include_str!("../../data/pendulum.urdf"));
+    bench.put("pendulum.toml", include_str!("../../data/pendulum.toml"));
+    let server = bench.lab("pendulum.toml");
+    let page = server.get("/s/1/gains").text();
+    assert!(page.contains("value=\"turn=0, swing=0\""), "{page}");
+    let ask = |pose: &str| {
+        let asked = json!({ "states": 1.0, "speeds": 1.0, "ts_s": 0.01, "pose": pose });
+        server.post("/s/1/gains", &asked)
+    };
+    let up = std::f64::consts::PI;
+    let answer = ask(&format!("swing = {up}"));
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    let answer = answer.json();
+    assert_eq!(answer["joints"], json!(["joint turn", "joint swing"]));
+    let told = bench.run(&format!("gains pendulum.toml --pose swing={up} --json"));
+    assert_eq!(answer["k"], told.json()["k"]);
+    let command = answer["command"].as_str().unwrap();
+    assert!(
+        command.ends_with(&format!(" --pose swing={up}")),
+        "{command}"
+    );
+    for (pose, said) in [
+        ("sing=1", "swing"),
+        ("swing", "by name"),
+        ("turn=3", "range"),
+    ] {
+        let answer = ask(pose);
+        assert_eq!(answer.status, 422, "{pose}: {}", answer.text());
+        assert!(answer.text().contains(said), "{pose}: {}", answer.text());
+    }
+}
+
 /// The page that `gains --report` writes, for the sliders as they stand.
 #[test]
 fn a_page_with_pictures_is_there_to_take_along() {

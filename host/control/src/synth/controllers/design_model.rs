@@ -50,9 +50,10 @@ impl DesignModel {
     /// smooth effects linearised, dead zone, delay and torque limit of its drives.
     ///
     /// # Errors
-    /// A pose that is no equilibrium, nothing driven, or joints that slide.
+    /// A pose that is no equilibrium, nothing driven, joints that slide, or a robot in space.
     pub fn new(model: &Model, pose_rad: &[f64], period_s: f64) -> Result<DesignModel> {
         model.hinges_only("this design is one of robots on hinges")?;
+        model.planar_only("this design is one of planar chains (`gains` takes both)")?;
         let model = bare_motors(model);
         let driven = model.driven_joints();
         let full_nm = |joint: usize| model.joints[joint].drive.motor().map(|m| m.stall_torque_nm);

@@ -31,8 +31,10 @@ impl GivenGains {
     /// duties are turned into them.
     ///
     /// # Errors
-    /// Drives that take no torque and no duty; a pose other than upright; another sampling time.
+    /// Drives that take no torque and no duty; a pose other than upright; another sampling time; a
+    /// robot in space.
     pub fn new(plan: &StateFeedbackPlan, model: &Model, period_s: f64) -> Result<GivenGains> {
+        model.planar_only("studies are of planar chains (`gains` takes both)")?;
         let joints = model.link_count();
         let upright = upright(model);
         let off = plan.pose_rad.iter().zip(&upright).map(|(a, b)| a - b);

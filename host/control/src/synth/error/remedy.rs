@@ -8,22 +8,21 @@ impl Reason for DesignError {
     fn remedy(&self) -> Cow<'_, str> {
         use DesignError as E;
         Cow::Borrowed(match self {
-            E::InSpace { .. } => {
-                "make a planar chain of joints whose axes are parallel: `handstand import --joints`"
-            }
             E::NothingDriven { .. } => "give a [[joint]] another drive than passive",
             E::NoInertia { .. } => "give every link a mass and an inertia",
             E::DelaysDiffer { .. } => {
                 "give every driven joint the same delay, or choose one with --delay"
             }
-            E::PoseSize { .. } => "give one angle per joint, from the base outwards",
-            E::PoseAngle(_) => "give angles in rad",
+            E::Pose(reason) => return reason.remedy(),
             E::NoEquilibrium { .. } => {
                 "choose a pose in which every passive joint balances; --balance finds the nearest"
             }
             E::EquilibriumNotFound => "start from a pose nearer to balance",
             E::SlideFiltered { .. } => "leave --lqg out",
             E::DriveTooWeak { .. } => "choose a pose that asks less of it",
+            E::HeldBeyondLimit { .. } => {
+                "raise the limit (--limit), or choose a pose that asks less of the drive"
+            }
             E::SamplingTime(_) => "give seconds above 0",
             E::Delay { most_samples, .. } => {
                 return format!("give a delay from 0 to {most_samples} samples").into();

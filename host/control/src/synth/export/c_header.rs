@@ -91,8 +91,7 @@ fn macros(design: &Design, law: &FixedLaw) -> String {
         (&design.states, &law.state_step, "STATE"),
         (&design.inputs, &law.input_step, "INPUT"),
     ] {
-        for (signal, step) in signals.iter().zip(steps) {
-            let name = macro_name(signal);
+        for (name, step) in macro_names(signals).iter().zip(steps) {
             let _ = writeln!(text, "#define @_{what}_STEP_{name} {}", float(*step));
         }
         let all = braced(steps.iter().map(|step| float(*step)));
@@ -101,10 +100,26 @@ fn macros(design: &Design, law: &FixedLaw) -> String {
     text
 }
 
-/// `u2(k-1)` as `U2_K1`.
-fn macro_name(signal: &Signal) -> String {
-    let name = signal.name.to_uppercase().replace("(K-", "_K");
-    name.replace(')', "")
+/// `u2(k-1)` as `U2_K1`, `q_left-arm` as `Q_LEFT_ARM`; where two would be the same, all have their
+/// place among the signals behind them.
+fn macro_names(signals: &[Signal]) -> Vec<String> {
+    let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let plain = |signal: &Signal| {
+        let name = signal
+            .name
+            .to_uppercase()
+            .replace("(K-", "_K")
+            .replace(')', "");
+        name.chars().map(letter).collect::<String>()
+    };
+    let mut all: Vec<String> = signals.iter().map(plain).collect();
+    let first = |(place, name): (usize, &String)| !all[..place].contains(name);
+    if !all.iter().enumerate().all(first) {
+        for (place, name) in all.iter_mut().enumerate() {
+            *name = format!("{name}_{}", place + 1);
+        }
+    }
+    all
 }
 
 /// The numbers, where firmware wants them.

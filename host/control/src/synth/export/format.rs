@@ -14,13 +14,12 @@ pub(super) fn several(values: &[Complex<f64>]) -> String {
             said.push("0".to_string());
             continue;
         }
-        let real = value.im.abs() <= 1e-9 * value.norm();
-        match real {
-            true => said.push(number(value.re)),
-            false if value.im > 0.0 => {
-                said.push(format!("{}±{}i", number(value.re), number(value.im)));
-            }
-            false => {}
+        let little = |part: f64| part.abs() <= 1e-9 * value.norm();
+        match (little(value.im), little(value.re)) {
+            (true, _) => said.push(number(value.re)),
+            (false, _) if value.im < 0.0 => {}
+            (false, true) => said.push(format!("±{}i", number(value.im))),
+            (false, false) => said.push(format!("{}±{}i", number(value.re), number(value.im))),
         }
     }
     let more = said.len().saturating_sub(MOST);
@@ -55,9 +54,11 @@ pub(super) fn digits(value: f64) -> String {
 /// A given number, to six digits at most.
 pub(super) fn plain(value: f64) -> String {
     let text = format!("{value:.6}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
     } else {
-        text
-    }
+        text.as_str()
+    };
+    // A zero has no sign for people, one after rounding neither.
+    if text == "-0" { "0" } else { text }.to_string()
 }

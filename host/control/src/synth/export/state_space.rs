@@ -24,6 +24,7 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
     let gains = &design.gains;
     json!({
         "model": design.model,
+        "joint_names": joint_names(design),
         "states": signals(&design.states),
         "inputs": signals(&design.inputs),
         "x0": design.x0,
@@ -54,6 +55,12 @@ pub fn json(design: &Design, made: &Provenance) -> Value {
             "command": made.command,
         },
     })
+}
+
+/// What a robot in space calls its joints, which are numbered elsewhere; null of a planar chain.
+fn joint_names(design: &Design) -> Option<Vec<&str>> {
+    let joints = 1..=design.plant.a.nrows() / 2;
+    joints.map(|joint| design.names.joint(joint)).collect()
 }
 
 fn omitted(omitted: &OmittedEffect) -> Value {

@@ -11,6 +11,54 @@ use nalgebra::DMatrix;
 /// Wider matrices are left to `--csv` and `--json`.
 const WIDEST: usize = 12;
 
+/// Longer ones, where joints have names, likewise.
+const LONGEST: usize = 40;
+
+/// Pose and inputs that hold it.
+fn operating_point(design: &Design) -> String {
+    let joints = design.plant.a.nrows() / 2;
+    // A zero has no sign for people.
+    let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v + 0.0)));
+    if design.names.joint(1).is_none() {
+        return format!(
+            "`{}` at q = [{}]{}, held by u = [{}]",
+            design.model,
+            joined(&design.x0[..joints]),
+            pose_unit(design),
+            joined(&design.u0)
+        );
+    }
+    let labels = (0..joints).map(|joint| design.names.label(joint));
+    let inputs = design.inputs.iter().map(|input| input.name.clone());
+    format!(
+        "`{}` at {}\nheld by {}",
+        design.model,
+        with_units(labels, &design.x0, &design.states),
+        with_units(inputs, &design.u0, &design.inputs)
+    )
+}
+
+/// Names with their values, the unit once where all have the same.
+fn with_units(names: impl Iterator<Item = String>, values: &[f64], signals: &[Signal]) -> String {
+    let values = values.iter().zip(signals);
+    let all: Vec<(String, f64, &str)> = names
+        .zip(values)
+        .map(|(name, (value, signal))| (name, *value, signal.unit))
+        .collect();
+    let unit = all[0].2;
+    let same = all.iter().all(|(.., own)| *own == unit);
+    let said = all.iter().map(|(name, value, own)| {
+        let value = plain(*value);
+        if same {
+            format!("{name} {value}")
+        } else {
+            format!("{name} {value} {own}")
+        }
+    });
+    let said = list(said);
+    if same { format!("{said} {unit}") } else { said }
+}
+
 /// Unit of a pose: of each joint where some slide.
 fn pose_unit(design: &Design) -> String {
     let joints = design.plant.a.nrows() / 2;
@@ -27,16 +75,7 @@ fn pose_unit(design: &Design) -> String {
 
 /// Gains, poles, zeros, what fixed point costs.
 pub fn text(design: &Design) -> String {
-    let joints = design.plant.a.nrows() / 2;
-    // A zero has no sign for people.
-    let joined = |values: &[f64]| list(values.iter().map(|v| plain(*v + 0.0)));
-    let mut parts = vec![format!(
-        "`{}` at q = [{}]{}, held by u = [{}]",
-        design.model,
-        joined(&design.x0[..joints]),
-        pose_unit(design),
-        joined(&design.u0)
-    )];
+    let mut parts = vec![operating_point(design)];
     parts.push(match &design.sampled {
         None => "Continuous time: u = u0 - K (x - x0)".to_string(),
         Some((plant, delay_s)) => format!(
@@ -53,7 +92,7 @@ pub fn text(design: &Design) -> String {
             list(sums.map(|sum| sum.name.as_str()))
         ));
     }
-    parts.extend(omitted_lines(&design.omitted));
+    parts.extend(omitted_lines(design));
     parts.push(String::new());
     parts.push(gain_table(design));
     parts.push(String::new());
@@ -71,7 +110,8 @@ pub fn text(design: &Design) -> String {
 }
 
 /// A line per effect that the design leaves out, its joints together.
-pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
+pub(super) fn omitted_lines(design: &Design) -> Vec<String> {
+    let omitted = &design.omitted;
     let kinds = omitted.iter().map(|o| (o.effect, o.why));
     let mut lines = Vec::new();
     for (at, (effect, why)) in kinds.enumerate() {
@@ -80,7 +120,7 @@ pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
             continue;
         }
         let joints = omitted.iter().filter(same).filter_map(|o| o.joint);
-        let joints: Vec<String> = joints.map(|joint| (joint + 1).to_string()).collect();
+        let joints: Vec<String> = joints.map(|joint| design.names.label(joint)).collect();
         let at = match joints.len() {
             0 => String::new(),
             1 => format!(" at joint {}", joints[0]),
@@ -93,6 +133,13 @@ pub(super) fn omitted_lines(omitted: &[OmittedEffect]) -> Vec<String> {
 }
 
 fn gain_table(design: &Design) -> String {
+    let (rows, columns) = (names(&design.inputs), names(&design.states));
+    let k = &design.gains.k;
+    let is_named = design.names.joint(1).is_some();
+    // Names are wide: a row for each state, as many as are read at a glance.
+    if is_named && rows.len() <= WIDEST && columns.len() <= LONGEST {
+        return matrix("K'", &columns, &rows, &k.transpose());
+    }
     if design.states.len() > WIDEST {
         return format!(
             "K is {} x {}: too wide for a page; --csv and --json give every digit",
@@ -100,8 +147,7 @@ fn gain_table(design: &Design) -> String {
             design.states.len()
         );
     }
-    let (rows, columns) = (names(&design.inputs), names(&design.states));
-    matrix("K", &rows, &columns, &design.gains.k)
+    matrix("K", &rows, &columns, k)
 }
 
 fn matrix(corner: &str, rows: &[String], columns: &[String], values: &DMatrix<f64>) -> String {
@@ -260,6 +306,23 @@ fn stationary_lines(design: &Design, estimation: &Estimation) -> Vec<String> {
     lines
 }
 
+/// Ranges and steps of the states; where joints have names, states of the same together.
+fn ranges(design: &Design, fixed: &FixedDesign) -> Vec<String> {
+    let together = design.names.joint(1).is_some();
+    let mut ranges: Vec<(String, String)> = Vec::new();
+    for (i, state) in design.states.iter().enumerate() {
+        let (range, step) = (plain(fixed.ranges.state[i]), short(fixed.law.state_step[i]));
+        let said = format!("±{range} in steps of {step}");
+        match ranges.iter_mut().find(|(_, own)| together && *own == said) {
+            Some((names, _)) => *names = format!("{names}, {}", state.name),
+            None => ranges.push((state.name.clone(), said)),
+        }
+    }
+    let said = ranges.into_iter();
+    said.map(|(names, range)| format!("{names} {range}"))
+        .collect()
+}
+
 fn fixed_lines(design: &Design, fixed: &FixedDesign) -> Vec<String> {
     let (law, loss) = (&fixed.law, &fixed.loss);
     let header = [
@@ -286,11 +349,7 @@ fn fixed_lines(design: &Design, fixed: &FixedDesign) -> Vec<String> {
         ]);
     }
     right(&mut table);
-    let ranges = design.states.iter().enumerate().map(|(i, state)| {
-        let (range, step) = (plain(fixed.ranges.state[i]), short(law.state_step[i]));
-        format!("{} ±{range} in steps of {step}", state.name)
-    });
-    let ranges: Vec<String> = ranges.collect();
+    let ranges = ranges(design, fixed);
     let beyond = design.inputs.iter().enumerate().filter(|(i, _)| {
         let error = loss.gain_error[*i] + loss.state_error[*i] + loss.input_error[*i];
         error > fixed.ranges.input[*i]

@@ -51,6 +51,6 @@ pub(super) fn head(design: &Design, fixed: &FixedDesign, made: &Provenance) -> V
             fixed.loss.radius, fixed.loss.radius_fixed
         ),
     ];
-    lines.extend(omitted_lines(&design.omitted));
+    lines.extend(omitted_lines(design));
     lines
 }

@@ -1,5 +1,6 @@
 use super::*;
-use crate::synth::operating_point::equations;
+use crate::dynamics::EquationsOfMotion;
+use crate::synth::rigid::rigid_rig;
 use crate::synth::{NonSmooth, balanced, upright};
 use std::path::Path;
 
@@ -112,7 +113,8 @@ fn accelerations(model: &Model, pose: &[f64], speed: &[f64], input: &[f64]) -> V
     ];
     let mut hanging = q.clone();
     hanging[0] += std::f64::consts::PI;
-    let equations = equations(model);
+    let rig = rigid_rig(model);
+    let equations = EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad);
     let left = torque
         - equations.coriolis(&hanging, &w) * DVector::from_column_slice(&w)
         - equations.gravity(&hanging);

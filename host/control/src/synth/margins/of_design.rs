@@ -8,7 +8,8 @@ use crate::synth::error::DesignError;
 use crate::synth::{Continuous, Design, Discrete, zoh};
 use nalgebra::DMatrix;
 
-/// Supply that a drive without a nominal one is taken to have, V: that of the paper's servos.
+/// Supply that a drive of a planar chain without a nominal one is taken to have, V: that of the
+/// paper's servos.
 const SUPPLY_V: f64 = 9.8;
 
 /// First step in the search for the longest delay and its end, in samples, and how much longer each
@@ -138,12 +139,13 @@ fn open_at_inputs(design: &Design) -> OpenLoop {
 
 /// The common gain as supply, where every input is a torque or a duty of one nominal supply.
 fn supply(model: &Model, gain: [f64; 2]) -> Option<SupplyRange> {
+    let usual_v = (!model.is_in_space()).then_some(SUPPLY_V);
     let mut nominal_v = None;
     for joint in model.driven_joints() {
         let joint = &model.joints[joint];
         let own_v = match &joint.drive {
-            Drive::Torque if joint.slide.is_none() => SUPPLY_V,
-            Drive::Duty(motor) => motor.nominal_supply_v.unwrap_or(SUPPLY_V),
+            Drive::Torque if joint.slide.is_none() => usual_v?,
+            Drive::Duty(motor) => motor.nominal_supply_v.or(usual_v)?,
             _ => return None,
         };
         if *nominal_v.get_or_insert(own_v) != own_v {

@@ -220,3 +220,41 @@ fn energy_is_what_torques_put_in() {
         );
     }
 }
+
+/// Mass matrix and gravity against Newton and Euler, their slope against its difference.
+#[test]
+fn the_closed_form_is_that_of_newton_and_euler() {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    for _ in 0..100 {
+        let tree = tree(&mut random);
+        let n = tree.len();
+        let (angle, still) = (numbers(&mut random, n, 3.0), vec![0.0; n]);
+        let holds = |angle: &[f64], acceleration: &[f64]| {
+            let mut torque = vec![0.0; n];
+            let joints = [angle, &still, acceleration];
+            let mut work = SpatialWorkspace::default();
+            SpatialEquations::new(&tree).inverse(&mut work, joints, &mut torque, |_, _| {});
+            nalgebra::DVector::from_vec(torque)
+        };
+        let found = TreeAtPose::new(&tree, &angle);
+        let (mass, gravity) = (found.mass(), holds(&angle, &still));
+        let size = 1.0 + mass.amax().max(gravity.amax());
+        assert!((found.gravity() - &gravity).amax() < 1e-12 * size);
+        assert!(gravity.amax() <= found.largest_gravity_nm() * (1.0 + 1e-12));
+        let slope = found.gravity_slope();
+        for joint in 0..n {
+            let mut one = still.clone();
+            one[joint] = 1.0;
+            let column = holds(&angle, &one) - &gravity;
+            assert!((mass.column(joint) - column).amax() < 1e-12 * size);
+            let moved = |by: f64| {
+                let mut angle = angle.clone();
+                angle[joint] += by;
+                holds(&angle, &still)
+            };
+            let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            assert!((slope.column(joint) - difference).amax() < 1e-7 * size);
+        }
+        assert_eq!(slope, slope.transpose());
+    }
+}

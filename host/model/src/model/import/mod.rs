@@ -228,11 +228,12 @@ pub(super) fn tree_of(root: Element) -> Result<(&'static str, RobotTree)> {
     }
 }
 
-/// A robot in space, and what its file calls joints and links.
+/// A robot in space, what its file calls joints and links, and the joints' ranges.
 pub(super) struct RobotInSpace {
     pub tree: SpatialTree,
     pub joints: Vec<String>,
     pub links: Vec<String>,
+    pub ranges: Vec<Option<(f64, f64)>>,
 }
 
 /// A robot's text as a tree in space.
@@ -244,6 +245,7 @@ pub(super) fn robot_in_space(text: &str, path: &Path, locked: &[Locked]) -> Resu
     let found = in_space(&tree, locked, &path.display().to_string())?;
     Ok(RobotInSpace {
         tree: found.tree,
+        ranges: found.joints.iter().map(|joint| joint.range_rad).collect(),
         joints: found.joints.into_iter().map(|joint| joint.name).collect(),
         links: found.bodies.into_iter().map(|(name, _)| name).collect(),
     })

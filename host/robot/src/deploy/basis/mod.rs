@@ -125,6 +125,7 @@ impl PlanBasis {
         timing: &BoardTiming,
         told: &ToldDrives,
     ) -> Result<PlanBasis> {
+        model.planar_only("the CM-5 balances planar chains")?;
         let driven = model.driven_joints();
         let mut board = *board;
         let mut losses = [DriveLoss::default(); INPUTS];

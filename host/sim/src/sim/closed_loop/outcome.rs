@@ -7,7 +7,8 @@ use serde::Serialize;
 /// that slide, 1 mm counts as 1 mrad, and none falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StabilityCriteria {
-    /// A link that leans further off its pose than this has fallen, rad.
+    /// A link that leans further off its pose than this has fallen, rad; of a robot in space a joint
+    /// that is so far off.
     pub fall_rad: f64,
     /// Stabilised is a robot that does not fall and keeps every joint this near to its pose at the
     /// end, rad, ..
@@ -36,8 +37,14 @@ impl StabilityCriteria {
         let mut lean = 0.0;
         let mut upright = true;
         for (joint, angle) in angle_rad.iter().enumerate() {
-            // Links that slide lean as those before them.
-            lean += if plant.slides(joint) { 0.0 } else { *angle };
+            // Links that slide lean as those before them; in space angles about different axes
+            // make no sum.
+            lean = match (plant.slides(joint), plant.is_in_space()) {
+                (true, true) => 0.0,
+                (true, false) => lean,
+                (false, true) => *angle,
+                (false, false) => lean + angle,
+            };
             upright &= f64::abs(lean) <= self.fall_rad && angle.is_finite();
         }
         !upright || !speed_rad_s.iter().all(|speed| speed.is_finite())

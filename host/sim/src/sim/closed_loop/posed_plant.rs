@@ -147,6 +147,12 @@ impl PosedPlant {
         self.plant.slides[joint]
     }
 
+    /// Whether it is a robot in space.
+    #[inline]
+    pub fn is_in_space(&self) -> bool {
+        self.plant.tree.is_some()
+    }
+
     /// Number of driven joints.
     pub fn drives(&self) -> usize {
         self.drives.len()
