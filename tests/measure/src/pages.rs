@@ -58,6 +58,7 @@ pub const PAGES: &[MeasuredPage] = &[
     page("hidden", Cost::Dear("hours")),
     page("hidden-approximate", Cost::Dear("an hour or two")),
     page("hidden-approximate-mujoco", Cost::Dear("hours; MuJoCo")),
+    page("hidden-space", Cost::Dear("half an hour; MuJoCo")),
     page("hidden-chain", Cost::Dear("hours")),
     page("hidden-chain-mujoco", Cost::Dear("hours; MuJoCo")),
     page("hidden-mujoco", Cost::Dear("hours; MuJoCo")),

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub enum Truth {
     /// The independent equations of the library's challenges
     Own,
-    /// MuJoCo, by tests/peers/hidden_mujoco.py
+    /// MuJoCo, by tests/peers/hidden_mujoco.py and hidden_space.py
     Mujoco,
     /// The virtual robot, recorded through the firmware's logic
     Robot,

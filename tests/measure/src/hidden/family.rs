@@ -37,6 +37,10 @@ pub enum Family {
     ApproximateHanging,
     /// The bench arm that hides nothing, whose file is a little wrong everywhere.
     NothingApproximate,
+    /// One effect at an arm in space of five joints.
+    Space,
+    /// That arm, which hides nothing.
+    NothingSpace,
     /// One effect at the virtual robot, hanging, recorded through the firmware's logic.
     Robot,
     /// That robot, which hides nothing.
@@ -44,7 +48,7 @@ pub enum Family {
 }
 
 /// All families, in the order of the tables.
-pub const FAMILIES: [Family; 15] = [
+pub const FAMILIES: [Family; 17] = [
     Family::Single,
     Family::Hanging,
     Family::Balancing,
@@ -58,6 +62,8 @@ pub const FAMILIES: [Family; 15] = [
     Family::ApproximateFree,
     Family::ApproximateHanging,
     Family::NothingApproximate,
+    Family::Space,
+    Family::NothingSpace,
     Family::Robot,
     Family::NothingRobot,
 ];
@@ -70,6 +76,17 @@ pub const OUTSIDE: [&str; 6] = [
     "hidden_pendulum",
     "rub",
     "warm_up",
+];
+
+/// Effects that MuJoCo hides in an arm in space.
+const IN_SPACE: [&str; 7] = [
+    "coulomb",
+    "armature",
+    "delay",
+    "dead_zone",
+    "mass",
+    "encoder_zero",
+    "torque_saturation",
 ];
 
 /// Effects that say what one value of the file says: where each is a little wrong, nothing hides in
@@ -102,6 +119,8 @@ impl Family {
             Family::ApproximateFree => "approximate-free",
             Family::ApproximateHanging => "approximate-hanging",
             Family::NothingApproximate => "nothing-approximate",
+            Family::Space => "space",
+            Family::NothingSpace => "nothing-space",
             Family::Robot => "robot",
             Family::NothingRobot => "nothing-robot",
         }
@@ -131,6 +150,7 @@ impl Family {
                 | Family::NothingHanging
                 | Family::NothingBalancing
                 | Family::NothingApproximate
+                | Family::NothingSpace
                 | Family::NothingRobot
         )
     }
@@ -151,6 +171,11 @@ impl Family {
         self.stated().is_some()
     }
 
+    /// Whether its rig is a robot in space, which MuJoCo alone makes.
+    pub fn is_in_space(self) -> bool {
+        matches!(self, Family::Space | Family::NothingSpace)
+    }
+
     /// Whether its logs are recordings of the virtual robot.
     pub fn is_recorded(self) -> bool {
         matches!(self, Family::Robot | Family::NothingRobot)
@@ -163,6 +188,7 @@ impl Family {
             Family::Hanging
             | Family::Balancing
             | Family::Pairs
+            | Family::Space
             | Family::Approximate
             | Family::ApproximateFree => ("named, or in an equivalent set", 0.9),
             Family::Triples => ("named, or in an equivalent set", 0.75),
@@ -172,6 +198,7 @@ impl Family {
             | Family::NothingApproximate
             | Family::NothingHanging
             | Family::NothingBalancing
+            | Family::NothingSpace
             | Family::NothingRobot => ("nothing is said to be missing", 0.99),
             Family::Outside => ("unexplained", 0.95),
         };
@@ -222,11 +249,13 @@ impl Plan {
                 .flat_map(|kind| seeds.clone().map(|seed| case(vec![kind], seed)))
                 .collect()
         };
-        if (self.truth == Truth::Robot) != family.is_recorded() {
+        let is_made = self.truth == Truth::Mujoco || !family.is_in_space();
+        if !is_made || (self.truth == Truth::Robot) != family.is_recorded() {
             return Vec::new();
         }
         match family {
             Family::Robot => each(&kinds(self.truth)),
+            Family::Space => each(&IN_SPACE),
             Family::Approximate | Family::ApproximateFree | Family::ApproximateHanging => {
                 let mut kinds = kinds(self.truth);
                 kinds.retain(|kind| !OF_VALUES.contains(kind));
@@ -251,9 +280,10 @@ impl Plan {
             Family::Nothing | Family::NothingApproximate => (self.seed0..self.seed0 + self.nominal)
                 .map(|seed| case(Vec::new(), seed))
                 .collect(),
-            Family::NothingHanging | Family::NothingBalancing | Family::NothingRobot => {
-                seeds.map(|seed| case(Vec::new(), seed)).collect()
-            }
+            Family::NothingHanging
+            | Family::NothingBalancing
+            | Family::NothingSpace
+            | Family::NothingRobot => seeds.map(|seed| case(Vec::new(), seed)).collect(),
         }
     }
 

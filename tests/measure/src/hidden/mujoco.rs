@@ -1,4 +1,4 @@
-//! The truth by MuJoCo: a script that shares nothing with the library.
+//! The truth by MuJoCo: scripts that share nothing with the library.
 
 use super::case::{Case, Files, TruthFile};
 use handstand_xtask::program::run as succeeds;
@@ -6,7 +6,7 @@ use handstand_xtask::root;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Where the script is, and the folder of the environment it runs in.
+/// Where the scripts are, and the folder of the environment they run in.
 fn places() -> (PathBuf, PathBuf) {
     (root().join("tests/peers"), root().join("target/peers"))
 }
@@ -35,30 +35,39 @@ pub fn install() -> bool {
         && succeeds(&mut pip)
 }
 
-/// Runs the script.
+/// Runs the script of the case's rig.
 pub(super) fn write(case: &Case, dir: &Path) -> Result<Files, String> {
     let (scripts, folder) = places();
     let effects = match case.hidden.as_slice() {
         [] => "nothing".to_string(),
         kinds => kinds.join(","),
     };
-    let output = Command::new(folder.join("venv/bin/python"))
-        .arg(scripts.join("hidden_mujoco.py"))
-        .arg(dir)
-        .args(["--motions", case.motions(), "--effects", &effects])
+    let in_space = case.family.is_in_space();
+    let script = if in_space {
+        "hidden_space.py"
+    } else {
+        "hidden_mujoco.py"
+    };
+    let mut python = Command::new(folder.join("venv/bin/python"));
+    python.arg(scripts.join(script)).arg(dir);
+    if !in_space {
+        python.args(["--motions", case.motions()]);
+    }
+    let output = python
+        .args(["--effects", &effects])
         .args(["--seed", &case.seed.to_string()])
         // A rig of three joints gains nothing from threads.
         .env("OMP_NUM_THREADS", "1")
         .env("OPENBLAS_NUM_THREADS", "1")
         .output()
-        .map_err(|error| format!("hidden_mujoco.py cannot be run: {error}"))?;
+        .map_err(|error| format!("{script} cannot be run: {error}"))?;
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr);
         let last = said.lines().last().unwrap_or("no message");
-        return Err(format!("hidden_mujoco.py: {last}"));
+        return Err(format!("{script}: {last}"));
     }
-    let truth: TruthFile = serde_json::from_slice(&output.stdout)
-        .map_err(|error| format!("hidden_mujoco.py: {error}"))?;
+    let truth: TruthFile =
+        serde_json::from_slice(&output.stdout).map_err(|error| format!("{script}: {error}"))?;
     let all = |names: &[String]| names.iter().map(|name| dir.join(name)).collect();
     Ok(Files {
         nominal: dir.join("nominal.toml"),

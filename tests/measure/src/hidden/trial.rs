@@ -140,7 +140,8 @@ fn in_fine_steps(mut model: Model, said: &Said) -> Model {
 
 /// The model with what the result gives it.
 fn found(files: &Files, said: &Said) -> handstand::Result<Model> {
-    let file = Path::new("found.toml");
+    // A robot's file lies beside it.
+    let file = &files.nominal.with_file_name("found.toml");
     let mut text = std::fs::read_to_string(&files.nominal)
         .map_err(|error| handstand::Error::file(&files.nominal, "read", error))?;
     let mut values = Vec::new();
