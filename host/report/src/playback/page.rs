@@ -51,7 +51,7 @@ pub fn html(scene: &Scene, command: &str) -> serde_json::Result<String> {
     let style = markup! { (PreEscaped(plot::STYLE)) (PreEscaped(STYLE)) };
     let body = markup! {
         (stage(scene)?)
-        p.note { code { (command) } }
+        section.note aria-label="Command that makes this page" { code { (command) } }
         noscript { p { "This page draws with a script of its own; allow it to run." } }
         script { (PreEscaped(script(scene))) }
     };
@@ -78,7 +78,9 @@ pub fn stage(scene: &Scene) -> serde_json::Result<Markup> {
             }
             aside { div #drives {} table #angles {} (keys(scene)) }
         }
-        @if scene.tree.is_some() { div.charts { (chart()) } } @else { (chart()) }
+        @if scene.tree.is_some() {
+            section.charts aria-label="Angles over time" { (chart()) }
+        } @else { (chart()) }
         footer {
             button #play title="Play, pause (Space)" { "▶" }
             input #scrub type="range" min="0" max="1000" value="0" step="1" aria-label="Time";

@@ -169,7 +169,7 @@
         const cell = document.createElement(name);
         cell.textContent = text;
         // Set here: a page's policy may refuse styles that stand in markup.
-        if (i > 0 && name === "td") cell.style.color = `var(${toneOf(shown[i - 1])})`;
+        if (i > 0 && name === "td") cell.style.borderBottom = `2px solid var(${toneOf(shown[i - 1])})`;
         return cell;
       }));
       return row;
