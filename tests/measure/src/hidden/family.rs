@@ -78,10 +78,10 @@ pub const OUTSIDE: [&str; 6] = [
     "warm_up",
 ];
 
-/// Effects that MuJoCo hides in an arm in space.
-const IN_SPACE: [&str; 7] = [
+/// Effects that MuJoCo hides in an arm in space; its file states armatures, so another one is a
+/// wrong value, and no effect.
+const IN_SPACE: [&str; 6] = [
     "coulomb",
-    "armature",
     "delay",
     "dead_zone",
     "mass",
