@@ -19,8 +19,8 @@
 //! ```
 //!
 //! Without `-o` the file's text goes to stdout. `--json` prints `format` (`urdf`, `mjcf`), `file`
-//! (or null), `text` (null where a file was written), `joints`, `in_space`, `not_carried` and `notes`
-//! (`part`, `name`, `line`, `why`).
+//! (or null), `text` (null where a file was written), `joints`, `in_space`, `not_carried` and
+//! `notes` (`part`, `name`, `line`, `why`).
 
 use super::{Console, ExitStatus, input};
 use handstand::Result;

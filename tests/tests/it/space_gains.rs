@@ -1,4 +1,5 @@
-//! Gains of robots in space: the loops hold what the designs promise, and poses are those of joints.
+//! Gains of robots in space: the loops hold what the designs promise, and poses are those of
+//! joints.
 
 use crate::space::CRANE;
 use crate::space_linear::with_torques;

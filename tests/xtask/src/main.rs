@@ -1,5 +1,5 @@
-//! `cargo xtask`: the project's own chores. What measures is another program, built when
-//! it is asked for: the chores here start at once.
+//! `cargo xtask`: the project's own chores. What measures is another program, built when it is
+//! asked for: the chores here start at once.
 
 mod checks;
 mod fuzz;

@@ -104,8 +104,8 @@ impl PoseText {
     /// m.
     ///
     /// # Errors
-    /// Joints that are not there or twice, and upright of a robot in space; another number of angles
-    /// than of joints, angles that are no numbers or beyond a range of the robot's file.
+    /// Joints that are not there or twice, and upright of a robot in space; another number of
+    /// angles than of joints, angles that are no numbers or beyond a range of the robot's file.
     pub fn resolve(&self, model: &Model) -> Result<Vec<f64>, DesignError> {
         let pose_rad = match self {
             PoseText::Upright if model.is_in_space() => {

@@ -33,8 +33,8 @@ pub struct Request {
 }
 
 impl Request {
-    /// At the [`default_pose`]; weights by Bryson's rule; every 10 ms, the inputs as late as the model has them;
-    /// departures within 0.5 rad and 10 rad/s; words of 16 bits.
+    /// At the [`default_pose`]; weights by Bryson's rule; every 10 ms, the inputs as late as the
+    /// model has them; departures within 0.5 rad and 10 rad/s; words of 16 bits.
     pub fn standard(model: &Model) -> Request {
         let joints = model.link_count();
         Request {

@@ -74,9 +74,9 @@ fn shown(model: &Model) -> Markup {
             h1 { (title) }
             p.lead { "The linear-quadratic regulator of the model in force. The response is \
                       simulated with every effect that the model has learned, from the first joint \
-                      20 mrad (1.1 deg) off. At 1 each state and input weighs one over the square of its \
-                      largest departure (Bryson's rule: 0.5 rad, 10 rad/s, the drive's own limit); \
-                      the first two sliders multiply that." }
+                      20 mrad (1.1 deg) off. At 1 each state and input weighs one over the square \
+                      of its largest departure (Bryson's rule: 0.5 rad, 10 rad/s, the drive's own \
+                      limit); the first two sliders multiply that." }
             (pose(model))
             @for (name, title, low, high, at) in SLIDERS {
                 div.wide-slider {

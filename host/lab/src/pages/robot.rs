@@ -76,7 +76,9 @@ pub fn stage_page(session: &LabSession) -> Result<Markup, LabError> {
             }
             body {
                 (stage)
-                @if let Some(line) = not_drawn { section.note aria-label="What is not drawn" title=(line) { (line) } }
+                @if let Some(line) = not_drawn {
+                    section.note aria-label="What is not drawn" title=(line) { (line) }
+                }
             }
         }
     })

@@ -70,10 +70,7 @@ impl LabSession {
         self.has_room()?;
         let folder = self.folder().join("logs");
         std::fs::create_dir_all(&folder).map_err(|why| Error::file(&folder, "make", why))?;
-        let (stem, ending) = file.rsplit_once('.').unwrap_or((&file, ""));
-        let mut names = std::iter::once(file.clone())
-            .chain((2..).map(|count| format!("{stem}-{count}.{ending}")));
-        match names.find(|name| !folder.join(name).exists()) {
+        match numbered(&file).find(|name| !folder.join(name).exists()) {
             Some(name) => Ok((name.clone(), folder.join(name))),
             None => unreachable!("there is no end to the names"),
         }
@@ -268,21 +265,33 @@ pub(super) fn model_file(step: usize) -> PathBuf {
     PathBuf::from(format!("model-{step}.toml"))
 }
 
+/// A name in letters that no file system and no page can misread, not hidden.
+pub(super) fn plain_letters(name: &str) -> String {
+    let plain = |c: char| match c {
+        c if c.is_ascii_alphanumeric() || "._-".contains(c) => c,
+        _ => '_',
+    };
+    let plain: String = name.chars().map(plain).collect();
+    plain.trim_start_matches('.').to_string()
+}
+
+/// A file's name, then the same with 2, 3, .. before its ending, without end.
+pub(super) fn numbered(file: &str) -> impl Iterator<Item = String> {
+    let (stem, ending) = match file.rsplit_once('.') {
+        Some((stem, ending)) => (stem.to_string(), format!(".{ending}")),
+        None => (file.to_string(), String::new()),
+    };
+    let others = (2..).map(move |count| format!("{stem}-{count}{ending}"));
+    std::iter::once(file.to_string()).chain(others)
+}
+
 /// The last part of a name, in letters that no file system and no page can misread.
 fn plain_name(name: &str) -> Result<String> {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
-    let plain = |c: char| {
-        if c.is_ascii_alphanumeric() || "._-".contains(c) {
-            c
-        } else {
-            '_'
-        }
-    };
-    let plain: String = last.chars().map(plain).collect();
-    let plain = plain.trim_start_matches('.');
-    let (stem, ending) = plain.rsplit_once('.').unwrap_or((plain, ""));
+    let plain = plain_letters(last);
+    let (stem, ending) = plain.rsplit_once('.').unwrap_or((&plain, ""));
     let ending = ending.to_ascii_lowercase();
-    if stem.is_empty() || !LogFormat::is_log(Path::new(plain)) {
+    if stem.is_empty() || !LogFormat::is_log(Path::new(&plain)) {
         let endings: Vec<&str> = LogFormat::endings().collect();
         return Err(Error::usage(
             format!("`{last}` is no log that can be read"),

@@ -1,15 +1,12 @@
 //! A data set of LeRobot as a log of a session: its files in a folder among the logs.
 
 use super::LabSession;
-use super::data::LONGEST_NAME;
+use super::data::{LONGEST_NAME, numbered, plain_letters};
 use crate::error::{Error, Result};
 use crate::log::lerobot::dataset_files;
 use crate::output::write_new_bytes;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
-
-/// Names of a data set's folder that are tried.
-const TRIED: usize = 10_000;
 
 /// Whether a path leads to a file of a data set, and nowhere else: `meta/info.json`.
 fn stays_inside(file: &str) -> bool {
@@ -58,19 +55,13 @@ impl LabSession {
             let what = format!("{name}: {file} leads out of the data set");
             return Err(Error::usage(what, "save the session again"));
         }
-        let plain = |c: char| match c {
-            c if c.is_ascii_alphanumeric() || "_-".contains(c) => c,
-            _ => '_',
-        };
-        let stem: String = name.chars().map(plain).take(LONGEST_NAME).collect();
+        // A folder has no ending.
+        let plain = plain_letters(name).replace('.', "_");
+        let stem: String = plain.chars().take(LONGEST_NAME).collect();
         let stem = if stem.is_empty() { "dataset" } else { &stem };
-        let numbered = (2..TRIED).map(|count| format!("{stem}-{count}"));
-        let mut names = std::iter::once(stem.to_string()).chain(numbered);
-        let free = names.find(|name| !self.log_path(name).exists());
-        let name = free.ok_or_else(|| {
-            let what = format!("{TRIED} data sets are called {stem}");
-            Error::usage(what, "remove some of them")
-        })?;
+        let Some(name) = numbered(stem).find(|name| !self.log_path(name).exists()) else {
+            unreachable!("there is no end to the names")
+        };
         for (file, bytes) in files {
             let path = self.log_path(&name).join(file);
             let folder = path.parent().unwrap_or(Path::new(""));

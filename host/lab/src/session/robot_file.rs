@@ -3,6 +3,7 @@
 
 use super::LabSession;
 use super::bring::is_robot;
+use super::data::{numbered, plain_letters};
 use super::saved::SavedSession;
 use crate::error::{Error, Result};
 use crate::model::Robot;
@@ -15,14 +16,9 @@ use std::path::{Path, PathBuf};
 /// that ends as no robot's is given an ending.
 fn plain_robot(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
-    let plain = |c: char| match c {
-        c if c.is_ascii_alphanumeric() || "._-".contains(c) => c,
-        _ => '_',
-    };
-    let plain: String = last.chars().map(plain).collect();
-    let plain = plain.trim_start_matches('.');
-    if is_robot(Path::new(plain)) {
-        plain.to_string()
+    let plain = plain_letters(last);
+    if is_robot(Path::new(&plain)) {
+        plain
     } else {
         format!("{plain}.xml")
     }
@@ -34,10 +30,7 @@ impl LabSession {
     /// # Errors
     /// The system's refusal.
     pub(super) fn keep_robot(&self, name: &str, text: &str) -> Result<String> {
-        let plain = plain_robot(name);
-        let (stem, ending) = plain.rsplit_once('.').unwrap_or((&plain, "xml"));
-        let numbered = (2..).map(|count| format!("{stem}-{count}.{ending}"));
-        for file in std::iter::once(plain.clone()).chain(numbered) {
+        for file in numbered(&plain_robot(name)) {
             let path = self.folder().join(&file);
             match std::fs::read_to_string(&path) {
                 Ok(known) if known == text => return Ok(file),

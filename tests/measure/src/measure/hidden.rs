@@ -2,9 +2,10 @@
 //!
 //! Families of cases: one effect at the bench arm, at the robot hanging, at the robot hanging and
 //! balancing; two and three effects; none; one that the library lacks; one where every value of the
-//! file is a little wrong, too; one at an arm in space, which MuJoCo alone makes. Every rig has motions to
-//! learn from and some held out. The truth is the library's own independent equations, with
-//! `--truth mujoco` MuJoCo's, with `--truth robot` the virtual robot recorded through the firmware.
+//! file is a little wrong, too; one at an arm in space, which MuJoCo alone makes. Every rig has
+//! motions to learn from and some held out. The truth is the library's own independent equations,
+//! with `--truth mujoco` MuJoCo's, with `--truth robot` the virtual robot recorded through the
+//! firmware.
 //! A line goes to stderr as each diagnosis ends, whichever ends first; the tables go to stdout.
 //! Fails when a target is missed or a case cannot be made.
 //!

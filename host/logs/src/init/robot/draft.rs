@@ -43,8 +43,8 @@ impl RobotDraft {
     /// Begins a model of a robot and of a log that `log_name` names.
     ///
     /// # Errors
-    /// As [`crate::init::Draft::of`] and [`import_for_log`]; joints that no name means, or several; a
-    /// data set without names; a calibration of another robot, and values that its unit does not
+    /// As [`crate::init::Draft::of`] and [`import_for_log`]; joints that no name means, or several;
+    /// a data set without names; a calibration of another robot, and values that its unit does not
     /// have.
     pub fn of(log: &RawLog, log_name: &str, robot: &RobotRequest) -> Result<RobotDraft> {
         let joints = moving_joints(robot.text, robot.file, &robot.space.locked)?;

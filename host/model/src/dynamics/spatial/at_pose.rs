@@ -2,17 +2,17 @@
 //! how those change with the pose.
 //!
 //! In the base's axes joint j has the axis a_j through p_j and carries the mass m_j with the first
-//! moment s_j and the moments of inertia I_j about p_j. At a speed of 1 of that joint alone, what it
-//! carries has the momentum f_j = a_j x s_j and the angular momentum n_j = I_j a_j about p_j; of a
-//! slide f_j = m_j a_j and n_j = s_j x a_j. With i the joint j itself or one that carries it,
+//! moment s_j and the moments of inertia I_j about p_j. At a speed of 1 of that joint alone, what
+//! it carries has the momentum f_j = a_j x s_j and the angular momentum n_j = I_j a_j about p_j; of
+//! a slide f_j = m_j a_j and n_j = s_j x a_j. With i the joint j itself or one that carries it,
 //!
 //! ```text
 //! M_ij = a_i . (n_j + (p_j - p_i) x f_j)      G_j = -g . f_j      dG_j/dq_i = -g . (a_i x f_j)
 //! ```
 //!
 //! where a slide i has M_ij = a_i . f_j and dG_j/dq_i = 0; rotors add to M_ii. dG/dq is symmetric,
-//! for G is the slope of a potential, and joints of different branches share nothing. (Featherstone,
-//! Rigid Body Dynamics Algorithms (2008), section 6.2.)
+//! for G is the slope of a potential, and joints of different branches share nothing.
+//! (Featherstone, Rigid Body Dynamics Algorithms (2008), section 6.2.)
 
 use super::{SpatialLink, SpatialTree};
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Vector3};

@@ -83,8 +83,8 @@ fn sliding(tree: &RobotTree, file: &str, left_out: &mut Vec<Remark>) -> Result<V
     Ok(vec![first])
 }
 
-/// All joints of a robot, base to tip, where each turns or slides alone behind the one before it and
-/// follows no other; none of a tree.
+/// All joints of a robot, base to tip, where each turns or slides alone behind the one before it
+/// and follows no other; none of a tree.
 pub(super) fn in_one_row(tree: &RobotTree) -> Option<Vec<usize>> {
     let carrying = |&body: &usize| !tree.bodies[body].joints.is_empty();
     let all: Vec<usize> = (0..tree.bodies.len()).filter(carrying).collect();

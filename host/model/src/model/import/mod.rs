@@ -1,8 +1,8 @@
 //! Models out of other simulators' files: URDF and MJCF.
 //!
 //! A robot becomes the planar chain of some of its joints, or a robot in space ([`import`]); whole,
-//! it becomes what its joints make ([`import_whole`]). What a model does not have is listed with the
-//! reason, never left out silently.
+//! it becomes what its joints make ([`import_whole`]). What a model does not have is listed with
+//! the reason, never left out silently.
 
 mod choice;
 mod frame;

@@ -92,7 +92,8 @@ impl Refusal {
 
 impl From<NotPlanar> for Refusal {
     fn from(NotPlanar(what): NotPlanar) -> Self {
-        let remedy = "without --joints the whole robot is taken; a planar chain is of joints about parallel axes";
+        let remedy = "without --joints and --planar the whole robot is taken; a planar chain is of \
+                      joints about parallel axes";
         Refusal::Joints(None, what, remedy)
     }
 }

@@ -110,7 +110,7 @@ impl<'a> Bodies<'a> {
         Ok(())
     }
 
-    /// The shape of a `<geom>`; none of what nobody sees, of planes and of height fields.
+    /// The shape of a `<geom>`; none of what is not seen, of planes and of height fields.
     fn shape(&self, own: &Attributes, frame: &Isometry3<f64>) -> Result<Option<Drawn>> {
         let kind = own.text("type").unwrap_or("sphere");
         let opacity = own.numbers("rgba")?.and_then(|rgba| rgba.get(3).copied());

@@ -7,8 +7,8 @@ use serde::Serialize;
 /// that slide, 1 mm counts as 1 mrad, and none falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StabilityCriteria {
-    /// A link that leans further off its pose than this has fallen, rad; of a robot in space a joint
-    /// that is so far off.
+    /// A link that leans further off its pose than this has fallen, rad; of a robot in space a
+    /// joint that is so far off.
     pub fall_rad: f64,
     /// Stabilised is a robot that does not fall and keeps every joint this near to its pose at the
     /// end, rad, ..
