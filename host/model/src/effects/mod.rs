@@ -68,7 +68,8 @@ pub use memory::{BodyState, MemoryCell, SenseMemory};
 pub use placebo::PLACEBO;
 pub use probe::ProbeVariable;
 pub use state::{
-    AtRest, DriveState, Encoded, FrictionState, JointState, Rig, Slope, StartUnknown, StepState,
+    AtRest, DriveState, Encoded, FrictionState, JointState, Rig, Signals, Slope, StartUnknown,
+    StepState,
 };
 pub use torque_scale::TORQUE_SCALE;
 pub use unit_suffix::split_unit;

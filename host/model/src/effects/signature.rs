@@ -6,7 +6,8 @@ mod remembered;
 mod tests;
 
 use super::{
-    DriveState, Effect, Encoded, FrictionState, JointState, MemoryCell, Needs, Parameter, Site,
+    DriveState, Effect, Encoded, FrictionState, JointState, MemoryCell, Needs, Parameter, Signals,
+    Site,
 };
 use bodies::{arm, gives_way_m, gravity_nm, inertia_nm, wound_nm};
 use std::ops::Range;
@@ -240,6 +241,7 @@ fn friction(
         motor_nm: gear_nm,
         outside_nm: 0.0,
         bearing_load_n: bearing_n,
+        signals: Signals::NONE,
     };
     direction * effect.friction(values, &slide)
 }

@@ -97,6 +97,26 @@ pub struct DriveState {
     pub memory: MemoryCell,
 }
 
+/// What the log says of a joint's drive at an instant, and when that is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Signals {
+    /// Input of the drive in SI of its kind, after delays: goal, rad or rad/s; duty; torque, N m.
+    pub input: f64,
+    /// Supply over nominal supply; 1 where either is unknown.
+    pub supply_ratio: f64,
+    /// Time of the motion, s, as its rows have it: steps of the log.
+    pub time_s: f64,
+}
+
+impl Signals {
+    /// No input, the nominal supply, at the beginning.
+    pub const NONE: Signals = Signals {
+        input: 0.0,
+        supply_ratio: 1.0,
+        time_s: 0.0,
+    };
+}
+
 /// A joint at an instant.
 #[derive(Debug, Clone, Copy)]
 pub struct JointState {
@@ -106,6 +126,8 @@ pub struct JointState {
     pub speed_rad_s: f64,
     /// Torque of the drive, N m.
     pub drive_nm: f64,
+    /// What is commanded and supplied, and when.
+    pub signals: Signals,
     /// Measured speed of another moment, rad/s: what a placebo acts on.
     pub shuffled_rad_s: f64,
     /// What the effect remembers, if it does.
@@ -119,6 +141,7 @@ impl JointState {
             angle_rad,
             speed_rad_s,
             drive_nm: 0.0,
+            signals: Signals::NONE,
             shuffled_rad_s: 0.0,
             memory: MemoryCell::EMPTY,
         }
@@ -221,4 +244,6 @@ pub struct FrictionState {
     pub outside_nm: f64,
     /// Magnitude of the force in the bearing, N.
     pub bearing_load_n: f64,
+    /// What is commanded and supplied, and when.
+    pub signals: Signals,
 }

@@ -6,6 +6,7 @@ pub use reading::{changed_lines, set_reading};
 
 mod bounds;
 mod columns;
+mod expression;
 mod provenance;
 mod robot;
 #[cfg(test)]
@@ -14,6 +15,7 @@ mod uncertainty;
 
 pub use bounds::set_bounds;
 pub use columns::{ChosenColumn, ColumnChoice, set_log_columns};
+pub use expression::add_expression;
 pub use provenance::{FitRecord, renew_provenance};
 pub use robot::{robot_file, set_robot_file};
 pub use uncertainty::keep_given;

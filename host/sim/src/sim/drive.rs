@@ -2,7 +2,7 @@
 //! them.
 
 use super::joint_plan::{ActiveEffect, JointPlan};
-use crate::effects::{AtRest, DriveState, MemoryCell};
+use crate::effects::{AtRest, DriveState, MemoryCell, Signals};
 use crate::model::Drive;
 
 /// Input of a drive at an instant.
@@ -14,6 +14,8 @@ pub(super) struct DriveInput {
     pub supply_ratio: f64,
     /// Whether the drive is energised.
     pub energised: bool,
+    /// Time of the motion, s.
+    pub time_s: f64,
     /// Measured speed of another moment, rad/s, for a placebo regressor.
     pub shuffled_rad_s: f64,
     /// Constant torque on the joint from outside, N m.
@@ -26,9 +28,20 @@ impl DriveInput {
         input: 0.0,
         supply_ratio: 1.0,
         energised: true,
+        time_s: 0.0,
         shuffled_rad_s: 0.0,
         disturbance_nm: 0.0,
     };
+}
+
+impl From<DriveInput> for Signals {
+    fn from(at: DriveInput) -> Signals {
+        Signals {
+            input: at.input,
+            supply_ratio: at.supply_ratio,
+            time_s: at.time_s,
+        }
+    }
 }
 
 impl JointPlan {

@@ -149,6 +149,7 @@ impl<R: Rows> Forces<R> {
                 angle_rad: at.angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed,
                 drive_nm: drive,
+                signals: input.into(),
                 shuffled_rad_s: input.shuffled_rad_s,
                 memory: MemoryCell::EMPTY,
             };
@@ -170,7 +171,12 @@ impl<R: Rows> Forces<R> {
         for joint in 0..n {
             if let Contact::Sliding(direction) = at.contact[joint] {
                 let speed = (direction * at.speed[joint]).max(0.0);
-                let friction = self.friction_nm(plant, joint, [at.angle[joint], speed], direction);
+                let friction = self.friction_nm(
+                    (plant, joint),
+                    inputs[joint],
+                    [at.angle[joint], speed],
+                    direction,
+                );
                 self.torque[joint] -= direction * friction;
             }
         }
@@ -180,8 +186,8 @@ impl<R: Rows> Forces<R> {
     /// 0 the breakaway torque.
     pub fn friction_nm(
         &self,
-        plant: &Plant,
-        joint: usize,
+        (plant, joint): (&Plant, usize),
+        input: DriveInput,
         [angle_rad, speed_rad_s]: [f64; 2],
         direction: f64,
     ) -> f64 {
@@ -193,6 +199,7 @@ impl<R: Rows> Forces<R> {
             motor_nm: self.drive_torque[joint],
             outside_nm: -self.loads[joint],
             bearing_load_n: self.bearing[joint],
+            signals: input.into(),
         };
         plant.joints[joint]
             .friction

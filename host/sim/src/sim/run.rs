@@ -252,6 +252,7 @@ fn set_inputs(
     inputs: &mut [DriveInput],
 ) {
     for (joint, plan) in plant.joints.iter().enumerate() {
+        inputs[joint].time_s = motion.time_s[sample];
         if let Some(shuffled) = plant.shuffled_rad_s.get(joint) {
             inputs[joint].shuffled_rad_s = shuffled[sample];
         }

@@ -346,7 +346,8 @@ impl<R: Rows> Stepper<R> {
             if contact[joint] == Contact::Held {
                 let push = -self.slope[joint];
                 let at_rest = [angle[joint], 0.0];
-                let breakaway = (self.forces).friction_nm(plant, joint, at_rest, push.signum());
+                let (place, input) = ((plant, joint), inputs[joint]);
+                let breakaway = (self.forces).friction_nm(place, input, at_rest, push.signum());
                 self.excess[joint] = push.abs() - breakaway;
             }
         }

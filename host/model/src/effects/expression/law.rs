@@ -1,6 +1,7 @@
-//! A user's law as an effect: a torque on the joint, given as an expression.
+//! A user's law as an effect: a torque or a friction of the joint, given as an expression.
 
-use super::super::{AtRest, JointState, Law, Slope};
+use super::super::{AtRest, FrictionState, JointState, Law, Slope};
+use super::LawSite;
 use super::program::{Program, Slot};
 
 /// Most values of an effect.
@@ -14,6 +15,7 @@ const SMOOTH: f64 = 1e-3;
 #[derive(Debug)]
 pub(super) struct ExpressionLaw {
     pub program: Program,
+    pub site: LawSite,
 }
 
 impl Law for ExpressionLaw {
@@ -22,17 +24,29 @@ impl Law for ExpressionLaw {
     }
 
     fn torque(&self, values: &[f64], at: &JointState) -> f64 {
-        self.program.value(values, at)
+        match self.site {
+            LawSite::Torque => self.program.value(values, &at.into()),
+            LawSite::Friction => 0.0,
+        }
     }
 
-    /// By differences, where both sides agree; none where the drive's torque enters.
+    /// What of it would push is no friction.
+    fn friction(&self, values: &[f64], at: &FrictionState) -> f64 {
+        match self.site {
+            LawSite::Torque => 0.0,
+            LawSite::Friction => self.program.value(values, &at.into()),
+        }
+    }
+
+    /// By differences, where both sides agree; none where the drive enters, and of friction.
     fn slope(&self, values: &[f64], at: &AtRest) -> Option<Slope> {
-        if self.program.has(Slot::Drive) {
+        let drives = [Slot::Drive, Slot::Input].map(|slot| self.program.has(slot));
+        if self.site == LawSite::Friction || drives.contains(&true) {
             return None;
         }
         let torque = |angle: f64, speed: f64| {
             let state = JointState::undriven(at.angle_rad + angle, speed);
-            self.program.value(values, &state)
+            self.program.value(values, &(&state).into())
         };
         let here = torque(0.0, 0.0);
         let derivative = |ahead: f64, behind: f64| {

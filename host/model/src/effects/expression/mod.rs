@@ -1,4 +1,5 @@
-//! Effects that a model file defines by an expression: `torque = "-c * w * abs(w)"`.
+//! Effects that a model file defines by an expression: `torque = "-c * w * abs(w)"`, or
+//! `friction = "c * abs(q)"`.
 //!
 //! A definition becomes an [`Effect`] like those of the library and lives as long as the program;
 //! equal definitions are one effect.
@@ -18,7 +19,7 @@ use program::Program;
 use std::sync::{LazyLock, RwLock};
 
 /// Most different laws of one run of the program, which keeps each.
-const MOST_LAWS: usize = 1000;
+const MOST_LAWS: usize = 10_000;
 
 /// A parameter of a user's law.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,10 +30,33 @@ pub struct LawParameter {
     pub unit: String,
     /// What it is.
     pub meaning: String,
-    /// Value to start a fit from.
-    pub start: f64,
+    /// Values to start fits from, the first one before the others; at least one.
+    pub starts: Vec<f64>,
     /// Lowest and highest value.
     pub bounds: (f64, f64),
+}
+
+/// What the expression of a law is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LawSite {
+    /// A torque on the joint.
+    Torque,
+    /// The magnitude of a friction, which holds the joint at rest; what of the sum is below zero is
+    /// none.
+    Friction,
+}
+
+impl LawSite {
+    /// All there are.
+    pub const ALL: [LawSite; 2] = [LawSite::Torque, LawSite::Friction];
+
+    /// Its key in model files.
+    pub fn key(self) -> &'static str {
+        match self {
+            LawSite::Torque => "torque",
+            LawSite::Friction => "friction",
+        }
+    }
 }
 
 /// A law as a model file defines it.
@@ -40,8 +64,10 @@ pub struct LawParameter {
 pub struct LawDefinition {
     /// Its name: the kind of the effect.
     pub name: String,
-    /// Torque on the joint, N m.
-    pub torque: String,
+    /// What the expression is.
+    pub site: LawSite,
+    /// Torque on the joint, or friction, N m.
+    pub expression: String,
     /// Its parameters.
     pub parameters: Vec<LawParameter>,
 }
@@ -54,7 +80,7 @@ pub enum DefinitionFault {
     /// The parameter of this index.
     Parameter(usize, ExpressionReason),
     /// The expression, at one of its characters.
-    Torque(Misplaced),
+    Expression(Misplaced),
 }
 
 type ExpressionLaws = Vec<(LawDefinition, Effect)>;
@@ -103,11 +129,15 @@ fn compiled(definition: &LawDefinition) -> Result<Effect, DefinitionFault> {
         .iter()
         .map(|p| p.key.as_str())
         .collect();
-    let program = syntax::parsed(&definition.torque, &keys).map_err(DefinitionFault::Torque)?;
+    let program = syntax::parsed(&definition.expression, &keys);
+    let program = program.map_err(DefinitionFault::Expression)?;
     let off: Vec<Option<f64>> = (0..keys.len())
         .map(|i| off(&program, definition, i))
         .collect();
-    let law = Box::leak(Box::new(ExpressionLaw { program }));
+    let law = Box::leak(Box::new(ExpressionLaw {
+        program,
+        site: definition.site,
+    }));
     Ok(Effect::of(law, info(definition, &off)))
 }
 
@@ -157,7 +187,13 @@ fn names(definition: &LawDefinition) -> Result<(), DefinitionFault> {
             ExpressionReason::NoName { name }
         } else if twice || reserved(&name) {
             ExpressionReason::NameTaken { name }
-        } else if low < high && (low..=high).contains(&parameter.start) {
+        } else if low < high
+            && !parameter.starts.is_empty()
+            && parameter
+                .starts
+                .iter()
+                .all(|start| (low..=high).contains(start))
+        {
             continue;
         } else {
             ExpressionReason::Bounds
@@ -174,7 +210,7 @@ fn off(law: &Program, definition: &LawDefinition, index: usize) -> Option<f64> {
     if !(low..=high).contains(&0.0) {
         return None;
     }
-    let mut values: Vec<f64> = parameters.iter().map(|p| p.start).collect();
+    let mut values: Vec<f64> = parameters.iter().map(|p| p.starts[0]).collect();
     values[index] = 0.0;
     let states = [(0.3, 1.7, 0.4), (-1.1, -0.6, -0.9), (2.3, -4.0, 0.2)];
     let vanishes = states.iter().all(|&(angle_rad, speed_rad_s, drive_nm)| {
@@ -182,7 +218,7 @@ fn off(law: &Program, definition: &LawDefinition, index: usize) -> Option<f64> {
             drive_nm,
             ..JointState::undriven(angle_rad, speed_rad_s)
         };
-        law.value(&values, &state) == 0.0
+        law.value(&values, &(&state).into()) == 0.0
     });
     vanishes.then_some(0.0)
 }
@@ -196,7 +232,7 @@ fn info(definition: &LawDefinition, off: &[Option<f64>]) -> &'static EffectInfo 
         off: *off,
         typical: p.bounds,
         bounds: p.bounds,
-        starts: Box::leak(Box::new([p.start])),
+        starts: Box::leak(p.starts.clone().into_boxed_slice()),
     };
     let parameters: Vec<Parameter> = definition
         .parameters
@@ -208,9 +244,16 @@ fn info(definition: &LawDefinition, off: &[Option<f64>]) -> &'static EffectInfo 
         id: text(&definition.name),
         title: text(&definition.name),
         aliases: &[],
-        law: text(&format!("torque = {}", definition.torque)),
+        law: text(&format!(
+            "{} = {}",
+            definition.site.key(),
+            definition.expression
+        )),
         scope: Scope::AnyJoint,
-        site: Site::Joint,
+        site: match definition.site {
+            LawSite::Torque => Site::Joint,
+            LawSite::Friction => Site::Friction,
+        },
         needs: Needs::Nothing,
         on_slide: OnSlide::Never,
         parameters: Box::leak(parameters.into_boxed_slice()),

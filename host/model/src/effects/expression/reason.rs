@@ -77,6 +77,9 @@ pub enum ExpressionReason {
     /// Bounds without room, or a start outside them.
     #[error("the bounds are not in order, or a start lies outside them")]
     Bounds,
+    /// A torque and a friction in one law.
+    #[error("`torque` and `friction` in one law")]
+    TwoSites,
     /// Too many laws for one run of the program.
     #[error("more than {most} different laws in one run")]
     TooManyLaws {
@@ -110,7 +113,8 @@ impl Reason for ExpressionReason {
             R::NameTaken { .. } => "choose another name".into(),
             R::NoName { .. } => "a name is small letters, digits and _, a letter first".into(),
             R::TooMany { .. } => "write the law as several effects".into(),
-            R::Bounds => "write bounds = [lowest, highest] with start between them".into(),
+            R::Bounds => "write low = LOWEST and high = HIGHEST with start between them".into(),
+            R::TwoSites => "write two [[expression]] tables, each with its own name".into(),
             R::TooManyLaws { .. } => "start the program again".into(),
         }
     }

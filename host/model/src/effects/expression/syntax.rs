@@ -7,10 +7,23 @@ use super::program::{LawOperator, Node, Program, Slot};
 use super::reason::ExpressionReason;
 
 /// Variables of a law, and what they are.
-pub const VARIABLES: [(&str, &str); 3] = [
+pub const VARIABLES: [(&str, &str); 7] = [
     ("q", "angle of the joint, rad, as in the log"),
     ("w", "speed of the joint, rad/s"),
+    (
+        "dir",
+        "direction of the motion, +1 or -1; at rest that of the push, and 0 to a torque",
+    ),
     ("tau", "torque of the joint's drive, N m"),
+    (
+        "input",
+        "input of the drive: goal, rad or rad/s, duty, or torque, N m",
+    ),
+    (
+        "supply",
+        "supply over nominal supply; 1 where the log has none",
+    ),
+    ("time", "time of the motion, s"),
 ];
 /// A function of one argument.
 pub type LawFunction = fn(f64) -> f64;
@@ -175,7 +188,11 @@ impl Parser<'_> {
         let node = match name {
             "q" => Node::Slot(Slot::Angle),
             "w" => Node::Slot(Slot::Speed),
+            "dir" => Node::Slot(Slot::Direction),
             "tau" => Node::Slot(Slot::Drive),
+            "input" => Node::Slot(Slot::Input),
+            "supply" => Node::Slot(Slot::Supply),
+            "time" => Node::Slot(Slot::Time),
             _ => match CONSTANTS.iter().find(|(known, _)| *known == name) {
                 Some((_, value)) => Node::Number(*value),
                 None => {

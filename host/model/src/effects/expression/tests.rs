@@ -1,19 +1,20 @@
 //! A law given as text is the law.
 
 use super::*;
-use crate::effects::AtRest;
+use crate::effects::{AtRest, FrictionState, Signals};
 
 fn definition(torque: &str) -> LawDefinition {
     let parameter = |key: &str| LawParameter {
         key: key.into(),
         unit: "N m".into(),
         meaning: String::new(),
-        start: 0.5,
+        starts: vec![0.5],
         bounds: (0.0, 10.0),
     };
     LawDefinition {
         name: "users_law".into(),
-        torque: torque.into(),
+        site: LawSite::Torque,
+        expression: torque.into(),
         parameters: vec![parameter("c"), parameter("exponent")],
     }
 }
@@ -93,6 +94,41 @@ fn smooth_laws_are_linearised_and_others_are_not() {
 }
 
 #[test]
+fn frictions_see_their_direction_and_laws_what_is_commanded() {
+    let friction = LawDefinition {
+        site: LawSite::Friction,
+        ..definition("c + exponent * dir * abs(w) + input * supply + time")
+    };
+    let law = effect(&friction).unwrap();
+    let signals = Signals {
+        input: 0.5,
+        supply_ratio: 0.8,
+        time_s: 3.0,
+    };
+    let at = FrictionState {
+        angle_rad: 0.1,
+        speed_rad_s: 0.2,
+        direction: -1.0,
+        gear_load_nm: 0.0,
+        motor_nm: 0.0,
+        outside_nm: 0.0,
+        bearing_load_n: 0.0,
+        signals,
+    };
+    let found = law.friction(&[2.0, 0.5], &at);
+    assert!((found - (2.0 - 0.1 + 0.4 + 3.0)).abs() < 1e-12, "{found}");
+    assert_eq!(law.info().site, Site::Friction);
+    assert_eq!(
+        law.torque(&[2.0, 0.5], &JointState::undriven(0.1, 0.2)),
+        0.0
+    );
+    let rest = JointState::undriven(0.1, 0.0);
+    let rest = JointState { signals, ..rest };
+    let law = effect(&definition("dir + c * time")).unwrap();
+    assert_eq!(law.torque(&[2.0, 0.5], &rest), 6.0);
+}
+
+#[test]
 fn names_and_bounds_are_judged() {
     let fault = |change: &dyn Fn(&mut LawDefinition)| {
         let mut wrong = definition("c * w");
@@ -111,9 +147,9 @@ fn names_and_bounds_are_judged() {
         found,
         DefinitionFault::Parameter(0, ExpressionReason::Bounds)
     );
-    let found = fault(&|d| d.torque = "c * ".into());
+    let found = fault(&|d| d.expression = "c * ".into());
     assert!(
-        matches!(found, DefinitionFault::Torque(Misplaced { at: 4, .. })),
+        matches!(found, DefinitionFault::Expression(Misplaced { at: 4, .. })),
         "{found:?}"
     );
 }

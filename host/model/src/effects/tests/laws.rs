@@ -124,6 +124,7 @@ fn friction_called_constant_is_that_and_no_other() {
                 motor_nm: gear_load_nm,
                 outside_nm: 0.0,
                 bearing_load_n,
+                signals: Signals::NONE,
             };
             effect.friction(&values, &slide)
         };

@@ -43,6 +43,7 @@ fn slide(speed_rad_s: f64, direction: f64) -> FrictionState {
         motor_nm: 0.3,
         outside_nm: -0.2,
         bearing_load_n: 4.0,
+        signals: Signals::NONE,
     }
 }
 

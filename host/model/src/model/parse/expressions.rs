@@ -3,7 +3,9 @@
 use super::super::reader::Table;
 use super::EITHER_SIGN;
 use crate::effects::Effect;
-use crate::effects::expression::{DefinitionFault, LawDefinition, LawParameter, effect};
+use crate::effects::expression::{
+    DefinitionFault, ExpressionReason, LawDefinition, LawParameter, LawSite, effect,
+};
 use crate::error::Result;
 
 pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
@@ -20,18 +22,25 @@ pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
 }
 
 fn law(table: &Table) -> Result<Effect> {
-    table.only(&["name", "torque", "parameter"])?;
+    table.only(&["name", "torque", "friction", "parameter"])?;
+    let given = |site: &LawSite| table.has(site.key());
+    let site = match LawSite::ALL.into_iter().filter(given).collect::<Vec<_>>()[..] {
+        [site] => site,
+        [] => LawSite::Torque,
+        _ => return Err(table.bad("friction", ExpressionReason::TwoSites)),
+    };
     let parameters = table.tables("parameter")?;
     let definition = LawDefinition {
         name: table.required_text("name")?.to_string(),
-        torque: table.required_text("torque")?.to_string(),
+        site,
+        expression: table.required_text(site.key())?.to_string(),
         parameters: parameters.iter().map(parameter).collect::<Result<_>>()?,
     };
     effect(&definition).map_err(|fault| match fault {
         DefinitionFault::Name(reason) => table.bad("name", reason),
         DefinitionFault::Parameter(index, reason) => parameters[index].bad("key", reason),
-        DefinitionFault::Torque(misplaced) => {
-            table.bad_character("torque", misplaced.at, misplaced.reason)
+        DefinitionFault::Expression(misplaced) => {
+            table.bad_character(site.key(), misplaced.at, misplaced.reason)
         }
     })
 }
@@ -46,7 +55,7 @@ fn parameter(table: &Table) -> Result<LawParameter> {
         meaning: text("meaning")?
             .unwrap_or("of the model file's law")
             .to_string(),
-        start: number("start")?,
+        starts: vec![number("start")?],
         bounds: (number("low")?, number("high")?),
     })
 }
@@ -76,6 +85,20 @@ mod tests {
         );
         assert_eq!(model.free[0].to_string(), "wind@1.c");
         assert_eq!(model.free[0].bounds(&model), (0.0, 1.0));
+    }
+
+    #[test]
+    fn a_friction_is_one_and_no_torque() {
+        let text = TEXT.replacen(
+            "torque = \"-c * w * abs(w)\"",
+            "friction = \"c * abs(q)\"",
+            1,
+        );
+        let model = Model::parse(&text, Path::new("a.toml")).unwrap();
+        assert_eq!(model.laws[0].info().site, crate::effects::Site::Friction);
+        assert_eq!(model.laws[0].info().law, "friction = c * abs(q)");
+        let both = "torque = \"c * w\"\nfriction = \"c\"";
+        refused("torque = \"-c * w * abs(w)\"", both, 13, 12);
     }
 
     #[track_caller]
