@@ -6,7 +6,7 @@
 
 pub use handstand_challenge as challenge;
 pub use handstand_control::{study, synth, sysid};
-pub use handstand_diagnose::{diagnose, experiment, first_model};
+pub use handstand_diagnose::{diagnose, discover, experiment, first_model};
 #[cfg(feature = "lab")]
 pub use handstand_lab as lab;
 pub use handstand_link as link;

@@ -9,6 +9,7 @@ use super::robot::{LINKS, Laws};
 use super::robot_motion::{SUPPLY_V, balance, hang};
 use super::rounding::rounded;
 use super::text::{self, EffectLine};
+use super::unknown_law::UnknownLaw;
 use super::{SHOWN_BY_MOTIONS, arm_logs, drawn, motions, mounts, stage, stream};
 use rand::Rng;
 
@@ -94,6 +95,22 @@ pub fn weakened_arm(seed: u64, kinds: &[&'static str], share: f64) -> Bench {
     let recordings = motions(seed, &rig.physics(&secrets), &rig, mounts(seed));
     arm_bench(&rig, secrets, &recordings)
 }
+
+/// The arm of this seed with the law of this name, one of [`unknown_laws`](super::unknown_laws), at
+/// random values; none of another name.
+pub fn unknown_law_arm(seed: u64, name: &str) -> Option<(Bench, UnknownLaw)> {
+    let rig = BenchArm::random(&mut stream(seed, 1), &[]);
+    let law = UnknownLaw::random(&mut stream(seed, UNKNOWN), name)?;
+    let mut truth = rig.physics(&[]);
+    truth.unknown = Some(law.clone());
+    let recordings = motions(seed, &truth, &rig, mounts(seed));
+    let mut bench = arm_bench(&rig, Vec::new(), &recordings);
+    bench.true_model_toml += &law.toml();
+    Some((bench, law))
+}
+
+/// The stream from which the values of a law are drawn that the library lacks.
+const UNKNOWN: u64 = 90;
 
 fn arm(seed: u64, kinds: &[&'static str]) -> Bench {
     let (rig, secrets, recordings) = stage(seed, kinds);

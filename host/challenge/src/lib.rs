@@ -24,17 +24,21 @@ mod score;
 mod seal;
 mod text;
 mod truth;
+mod unknown_law;
 
 #[cfg(test)]
 mod tests;
 
-pub use bench::{Bench, BenchEffect, BenchLog, Motions, bench, true_model_toml, weakened_arm};
+pub use bench::{
+    Bench, BenchEffect, BenchLog, Motions, bench, true_model_toml, unknown_law_arm, weakened_arm,
+};
 pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use played::{ArmInputs, play};
 pub use readings::{READINGS, Readings, read_arm, read_pendulum};
 pub use score::{ChallengeScore, ScoredValue, score};
 pub use seal::{ChallengeAnswer, seal, unseal};
+pub use unknown_law::{UnknownLaw, unknown_laws};
 
 use bench_arm::{BenchArm, STALL_NM};
 use handstand_model::error::{Error, Result};

@@ -5,6 +5,7 @@ mod switched_on;
 
 use super::gyro::GyroLaw;
 use super::moving_base::{Base, BaseState, LinksOnBase};
+use super::unknown_law::UnknownLaw;
 
 /// Gravity, m/s^2.
 pub const GRAVITY_M_S2: f64 = 9.81;
@@ -90,6 +91,8 @@ pub struct Physics {
     pub grip_rad_s2: f64,
     /// The gyro on the link, where there is one.
     pub gyro: Option<GyroLaw>,
+    /// A law that the library lacks.
+    pub unknown: Option<UnknownLaw>,
     constant_nm: f64,
     side_friction: [f64; 2],
     side_span: f64,
@@ -251,6 +254,9 @@ impl Physics {
         magnitude += (motor * drive + outside * holding).abs();
         if self.excess != 0.0 {
             magnitude += self.excess * (-speed.abs() / self.stribeck_speed).exp();
+        }
+        if let Some(law) = &self.unknown {
+            magnitude += law.friction_nm(angle, direction * speed.abs(), drive);
         }
         magnitude.max(0.0)
     }

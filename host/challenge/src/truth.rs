@@ -106,7 +106,10 @@ impl<'a> Arm<'a> {
         let holding = self.physics.holding(self.mount, self.angle);
         let (physics, history) = (self.physics, &self.history);
         let drive = history.passed_on(physics, |speed| physics.drive(push, speed), at_speed);
-        let smooth = physics.smooth(self.angle, at_speed) + history.bristle_nm(physics);
+        let mut smooth = physics.smooth(self.angle, at_speed) + history.bristle_nm(physics);
+        if let Some(law) = &physics.unknown {
+            smooth += law.torque_nm(self.angle, at_speed, drive);
+        }
         let (mut inertia, mut torque) = (self.inertia, drive + smooth - holding);
         let moving = physics.base.map(|base| {
             let links = physics.on_base(self.mount, self.angle, at_speed);

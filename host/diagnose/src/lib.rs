@@ -2,6 +2,7 @@
 //! and a first model of a log where there is none.
 
 pub mod diagnose;
+pub mod discover;
 pub mod experiment;
 pub mod first_model;
 

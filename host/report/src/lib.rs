@@ -4,6 +4,7 @@ mod candidates;
 mod closed_loop;
 mod command;
 mod diagnosis_file;
+mod discovery;
 pub mod effect_page;
 mod failures;
 mod file_names;
@@ -34,6 +35,7 @@ mod waterfall;
 mod words;
 
 pub use diagnosis_file::DiagnosisFile;
+pub use discovery::{discovery_json, discovery_text};
 pub use file_names::{file_name, file_names};
 pub use gains_page::{GainsReport, gains_page};
 pub use json::{diagnosis_json, gains_json, json};

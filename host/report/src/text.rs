@@ -24,7 +24,7 @@ const SHOWN: usize = 8;
 pub fn diagnosis_text(diagnosis: &Diagnosis, names: &JointNames) -> String {
     let sections = [
         Some(headline(diagnosis)),
-        effects(&diagnosis.effects, names),
+        parameters("Missing effects", &diagnosis.effects, names),
         wrong_values(&diagnosis.wrong_values),
         error(diagnosis),
         budget(&diagnosis.budget, names, diagnosis.error.quantity),
@@ -46,7 +46,12 @@ fn headline(diagnosis: &Diagnosis) -> String {
     lines.join("\n")
 }
 
-fn effects(effects: &[FittedEffect], names: &JointNames) -> Option<String> {
+/// The values of effects, under this title.
+pub(crate) fn parameters(
+    title: &str,
+    effects: &[FittedEffect],
+    names: &JointNames,
+) -> Option<String> {
     let mut values = Vec::new();
     for effect in effects {
         values.extend(effect.parameters.iter().map(|fitted| (effect, fitted)));
@@ -73,7 +78,7 @@ fn effects(effects: &[FittedEffect], names: &JointNames) -> Option<String> {
         ("", &|(_, fitted)| note(fitted.on_bound).to_string()),
     ];
     Some(format!(
-        "Missing effects\n{}",
+        "{title}\n{}",
         lines(table_of(&values, columns), &[1, 3, 4])?
     ))
 }
@@ -92,7 +97,7 @@ fn wrong_values(wrong: &[WrongValue]) -> Option<String> {
     (!lists.is_empty()).then(|| lists.join("\n\n"))
 }
 
-fn error(diagnosis: &Diagnosis) -> Option<String> {
+pub(crate) fn error(diagnosis: &Diagnosis) -> Option<String> {
     let error = &diagnosis.error;
     let unit = error.quantity.milli();
     let (before, after) = (mrad(error.before_rad), mrad(error.after_rad));
@@ -223,7 +228,7 @@ fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
     ))
 }
 
-fn list(title: &str, items: &[String]) -> Option<String> {
+pub(crate) fn list(title: &str, items: &[String]) -> Option<String> {
     let lines: Vec<String> = items.iter().map(|item| format!("  - {item}")).collect();
     (!items.is_empty()).then(|| format!("{title}\n{}", lines.join("\n")))
 }

@@ -32,7 +32,7 @@ use each::EachArgs;
 use handstand::compare::{ClosedLoopComparison, Comparison, closed_loop_text, compare_all};
 use handstand::diagnose::conventions::ModelFile;
 use handstand::diagnose::{DiagnoseOptions, Diagnosis, LogDiagnosis, Verdict, diagnose_logs};
-use handstand::fitting::{Horizon, Progress, effect_ids};
+use handstand::fitting::{Horizon, Progress, StopSwitch, effect_ids};
 use handstand::log::{LogRequest, LogSet, read};
 use handstand::model::JointNames;
 use handstand::motion::Motion;
@@ -145,16 +145,22 @@ fn try_all(model: &Model, args: &DiagnoseArgs, console: &Console) -> Result<LogD
         path: &args.model,
         text: &text,
     };
-    let interrupt = Interrupt::accepting(&options.stop);
+    let heard = until_stopped(&options.stop, console);
+    diagnose_logs(model, file, &logs, &options, &heard)
+}
+
+/// Shows progress until Ctrl-C, which accepts the best so far; that is told once.
+pub fn until_stopped(stop: &StopSwitch, console: &Console) -> impl Fn(Progress) + Sync {
+    let interrupt = Interrupt::accepting(stop);
     let shown = console.progress();
     let told = AtomicBool::new(false);
-    let heard = |progress: Progress| {
+    let console = console.clone();
+    move |progress: Progress| {
         if interrupt.has_come() && !told.swap(true, Ordering::Relaxed) {
             console.say(&stopping(&progress));
         }
         shown(progress);
-    };
-    diagnose_logs(model, file, &logs, &options, &heard)
+    }
 }
 
 /// That the best so far is judged, and what it is: a second Ctrl-C leaves no more than this line.

@@ -21,6 +21,7 @@ mod demo_robot;
 #[cfg(feature = "robot")]
 mod deploy;
 mod diagnose;
+mod discover;
 mod doctor;
 mod drift;
 mod effects;
@@ -117,6 +118,8 @@ pub enum Command {
     Compare(compare::CompareArgs),
     /// Diagnose which physical effect a model lacks, from logs
     Diagnose(diagnose::DiagnoseArgs),
+    /// Discover the law that a model and the library lack, as an expression
+    Discover(discover::DiscoverArgs),
     /// Propose the experiment that parts what a diagnosis leaves open, or tightens a value
     Next(Box<next::NextArgs>),
     /// List and explain the physical effects of the library
@@ -206,6 +209,7 @@ impl Command {
             Command::Init(args) => init::run(args, console),
             Command::Compare(args) => compare::run(args, console),
             Command::Diagnose(args) => diagnose::run(args, console),
+            Command::Discover(args) => discover::run(args, console),
             Command::Next(args) => next::run(args, console),
             Command::Effects(args) => effects::run(args, console),
             Command::Log(command) => log::run(command, console),

@@ -5,6 +5,7 @@ mod contributing;
 mod dependencies;
 #[cfg(all(unix, simavr))]
 mod deploy;
+mod discover;
 mod firmware;
 mod first_hour;
 mod fuzz;

@@ -51,6 +51,8 @@ enum Chore {
     BenchRecord(Words),
     /// Measure how weak an effect may be and still be named
     Detection(Words),
+    /// Measure how often a law that the library lacks is discovered, and how often one is invented
+    Discover(Words),
     /// Measure how often hidden effects are named, missed and invented
     Hidden(Words),
     /// Renew the pages of docs/measured that take minutes, and name the commands of the others
@@ -104,6 +106,7 @@ fn main() -> ExitCode {
         Chore::BenchRead(words) => ("bench-read", words),
         Chore::BenchRecord(words) => ("bench-record", words),
         Chore::Detection(words) => ("detection", words),
+        Chore::Discover(words) => ("discover", words),
         Chore::Hidden(words) => ("hidden", words),
         Chore::Measured(words) => ("measured", words),
         Chore::Peers(words) => ("peers", words),

@@ -235,7 +235,11 @@ impl FittedEffect {
 
     pub(crate) fn candidate(&self, model: &Model) -> Option<Candidate> {
         let joint = self.joint.map(|joint| joint - 1);
-        let effect = effect_on(effects::named(&self.kind)?, joint, &model.joints)?;
+        // The model's own laws first: another model may define a law of the same name.
+        let mut laws = model.laws.iter().copied();
+        let own = laws.find(|law| law.info().id == self.kind);
+        let effect = own.or_else(|| effects::named(&self.kind))?;
+        let effect = effect_on(effect, joint, &model.joints)?;
         Some(Candidate { effect, joint })
     }
 }

@@ -54,4 +54,5 @@ pub use measured_value::values_behind;
 pub use options::DiagnoseOptions;
 pub use pipeline::diagnose;
 pub(crate) use selection::independent_share;
+pub(crate) use terms::JointRange;
 pub use whole_error::whole_error_rad;

@@ -19,7 +19,7 @@ pub(super) struct Term {
 pub(super) fn terms(model: &Model, data: &FitProblem) -> Vec<Term> {
     let mut terms = Vec::new();
     for joint in 0..model.link_count() {
-        let range = Range::of(model, data, joint);
+        let range = JointRange::of(model, data, joint);
         let mut add = |variable: ProbeVariable, amplitude: f64, centre: f64, width: f64| {
             terms.push(Term {
                 variable,
@@ -86,16 +86,16 @@ pub(super) fn terms(model: &Model, data: &FitProblem) -> Vec<Term> {
 }
 
 /// What a joint's motions cover.
-struct Range {
-    low_rad: f64,
-    high_rad: f64,
-    speed_rad_s: f64,
-    drive_nm: f64,
-    torque_nm: f64,
+pub(crate) struct JointRange {
+    pub low_rad: f64,
+    pub high_rad: f64,
+    pub speed_rad_s: f64,
+    pub drive_nm: f64,
+    pub torque_nm: f64,
 }
 
-impl Range {
-    fn of(model: &Model, data: &FitProblem, joint: usize) -> Range {
+impl JointRange {
+    pub fn of(model: &Model, data: &FitProblem, joint: usize) -> JointRange {
         let measured = || {
             let positions = data.motions.iter().flat_map(|m| &m.position_rad[joint]);
             positions.copied().filter(|angle| angle.is_finite())
@@ -154,7 +154,7 @@ impl Range {
             ),
             None => (-PI, PI),
         };
-        Range {
+        JointRange {
             low_rad,
             high_rad,
             speed_rad_s: fast.max(1e-3),

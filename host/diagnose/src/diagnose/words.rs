@@ -275,10 +275,14 @@ fn after_verdict(diagnosis: &Diagnosis) -> Vec<String> {
         }
         Verdict::Ambiguous => experiments(diagnosis),
         Verdict::Unexplained => {
-            let isolate = "Record a motion that isolates those conditions, or write the missing \
-                           effect as a file of its own.";
+            let isolate = "Record a motion that isolates those conditions.";
+            let holdout = held_out(diagnosis).0;
             vec![
                 format!("See where it fails: handstand compare {MODEL} {LOGS}"),
+                format!(
+                    "Look for a law that the library lacks: handstand discover {MODEL} \
+                     {LOGS}{holdout}"
+                ),
                 one_sided::next(diagnosis).unwrap_or_else(|| isolate.to_string()),
             ]
         }

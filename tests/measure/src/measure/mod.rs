@@ -6,6 +6,7 @@ mod bench_read;
 #[cfg(unix)]
 mod bench_record;
 mod detection;
+mod discover;
 mod first_hour;
 mod hidden;
 mod measured;
@@ -42,6 +43,8 @@ enum Chore {
     Hidden(hidden::Args),
     /// Measure how weak an effect may be and still be named
     Detection(detection::Args),
+    /// Measure how often a law that the library lacks is discovered, and how often one is invented
+    Discover(discover::Args),
     /// Renew the pages of docs/measured that take minutes, and name the commands of the others
     Measured(measured::Args),
     /// Measure whether a limited time gives the verdict of the whole search
@@ -81,6 +84,7 @@ impl Chores {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
             Chore::Detection(args) => detection::run(args),
+            Chore::Discover(args) => discover::run(args),
             Chore::Measured(args) => measured::run(args),
             Chore::Within(args) => within::run(args),
             Chore::Next(args) => next::run(args),

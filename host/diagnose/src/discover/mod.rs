@@ -1,0 +1,99 @@
+//! The law that the library lacks: which terms in a joint's angle, speed, load, supply and time
+//! make the torque that a model misses.
+//!
+//! Sparse regression over a library of terms, as SINDy does it (Brunton, Proctor, Kutz, PNAS 113
+//! (2016) 3932), but on the trajectories: no measured angle is differentiated. Each term is an
+//! effect of one joint; alone, in pairs and in threes they are fitted with the model's free values
+//! and start states and judged on motions held out, as a diagnosis does with effects it has names
+//! for, by the same search, floor, placebos and intervals.
+
+mod findings;
+mod scales;
+mod vocabulary;
+
+pub use findings::{DiscoveredTerm, Discovery, DiscoveryVerdict};
+
+use crate::diagnose::conventions::ModelFile;
+use crate::diagnose::{DiagnoseOptions, diagnose_logs};
+use crate::effects::expression::{LawDefinition, effect};
+use crate::effects::{EFFECTS, Effect};
+use crate::error::Result;
+use crate::fitting::Progress;
+use crate::log::LogSet;
+use crate::model::Model;
+use crate::motion::{Motion, Split};
+use scales::Scales;
+use vocabulary::vocabulary;
+
+/// Effects of the library that a law may need beside its terms.
+const PLAIN: [&str; 2] = ["coulomb", "viscous"];
+
+/// A discovery, and the motions it was made from.
+#[derive(Debug, Clone)]
+pub struct LogDiscovery {
+    /// What was found.
+    pub discovery: Discovery,
+    /// The model with every term that was tried as a law of its own.
+    pub model: Model,
+    /// What was fitted and what was held out; nothing where the logs were refused.
+    pub split: Split,
+}
+
+/// Looks for the torque that the model of `file` lacks in logs: as
+/// [`diagnose_logs`], with terms in the place of the library's effects.
+///
+/// # Errors
+/// As [`diagnose_logs`].
+pub fn discover_logs(
+    model: &Model,
+    file: ModelFile,
+    logs: &LogSet,
+    options: &DiagnoseOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<LogDiscovery> {
+    let named = logs.read(&model.log)?;
+    let motions: Vec<Motion> = named.training.into_iter().chain(named.held_out).collect();
+    let mut terms = vocabulary(&Scales::of(model, &motions));
+    terms.iter_mut().for_each(|term| rename(term, &model.laws));
+    let mut model = model.clone();
+    model.laws.extend(defined(&terms));
+    let found = diagnose_logs(&model, file, logs, &of_terms(options), progress)?;
+    Ok(LogDiscovery {
+        discovery: Discovery::new(found.diagnosis, &terms),
+        split: found.split,
+        model,
+    })
+}
+
+/// Gives a term a name that none of the model's own laws has.
+fn rename(term: &mut LawDefinition, laws: &[Effect]) {
+    let name = term.name.clone();
+    let is_taken = |name: &str| laws.iter().any(|law| law.info().id == name);
+    let free = (2..).map(|number| format!("{name}_{number}"));
+    let mut free = std::iter::once(name.clone()).chain(free);
+    term.name = free.find(|name| !is_taken(name)).unwrap_or(name.clone());
+}
+
+/// The effects of these terms.
+///
+/// # Panics
+/// A term that is no law: the vocabulary's own.
+fn defined(terms: &[LawDefinition]) -> Vec<Effect> {
+    let defined = terms.iter().map(|term| match effect(term) {
+        Ok(effect) => effect,
+        Err(fault) => panic!("{} is no law: {fault:?}", term.name),
+    });
+    defined.collect()
+}
+
+/// The options of a diagnosis whose candidates are the terms.
+fn of_terms(options: &DiagnoseOptions) -> DiagnoseOptions {
+    let library = EFFECTS.iter().map(|effect| effect.info().id);
+    let others = library.filter(|id| !PLAIN.contains(id));
+    let mut options = options.clone();
+    options.without.extend(others.map(str::to_string));
+    options
+}
+
+#[cfg(test)]
+mod tests;
