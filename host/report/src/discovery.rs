@@ -1,10 +1,17 @@
 //! A discovery as text and JSON: the law, what it leaves, and what else would do.
 
+use crate::AFTER;
 use crate::json::diagnosis_json;
+use crate::page::Section;
+use crate::plot::{Chart, Curve, Tone};
 use crate::text::{error, list, parameters};
 use crate::words::in_milli;
-use handstand_diagnose::discover::{DiscoveredTerm, Discovery, DiscoveryVerdict};
+use handstand_diagnose::diagnose::words::change;
+use handstand_diagnose::discover::{
+    DiscoveredTerm, Discovery, DiscoveryVerdict, TermPicture, TermVariable,
+};
 use handstand_model::model::JointNames;
+use maud::html;
 use serde_json::{Value, json};
 
 /// Laws shown beside the one found.
@@ -19,10 +26,8 @@ pub fn discovery_text(discovery: &Discovery, names: &JointNames) -> String {
     }
     let law = discovery.terms.iter();
     let law: Vec<String> = law.map(|term| line(term, names)).collect();
-    let wrong = diagnosis
-        .wrong_values
-        .iter()
-        .map(|wrong| wrong.fitted.to_string());
+    let wrong = diagnosis.wrong_values.iter();
+    let wrong = wrong.map(|wrong| format!("{}: {}", wrong.fitted.path, change(wrong)));
     let sections = [
         Some(headline.join("\n")),
         list("The model lacks, in sum", &law),
@@ -30,7 +35,7 @@ pub fn discovery_text(discovery: &Discovery, names: &JointNames) -> String {
         parameters("Values", &diagnosis.effects, names),
         error(diagnosis),
         list("As good", &others(discovery, names)),
-        list("Next", &next(discovery)),
+        list("Next", &diagnosis.next),
         list("Warnings", &diagnosis.warnings),
     ];
     let sections: Vec<String> = sections.into_iter().flatten().collect();
@@ -45,8 +50,63 @@ pub fn discovery_json(discovery: &Discovery) -> Value {
         "verdict": discovery.verdict,
         "terms": discovery.terms,
         "others": others.collect::<Vec<_>>(),
+        "pictures": discovery.pictures,
         "diagnosis": diagnosis_json(&discovery.diagnosis),
     })
+}
+
+/// The law with its pictures, for the page of a report.
+pub fn law_section(discovery: &Discovery, names: &JointNames) -> Option<Section> {
+    if !discovery.has_law() {
+        return None;
+    }
+    let drawn = |term: &DiscoveredTerm| {
+        let own = |p: &&TermPicture| p.kind == term.kind && Some(p.joint) == term.joint;
+        discovery.pictures.iter().find(own).map(chart)
+    };
+    Some(Section {
+        id: "law",
+        title: "The law that is missing",
+        lead: "The sum of these terms. Curve: the law. Dots: what the motions ask for where any \
+               torque over this variable is allowed, with 95 % intervals; where they leave the \
+               curve its shape is wrong.",
+        body: html! {
+            p { (sentence(discovery.verdict)) }
+            @for term in &discovery.terms {
+                div.effect {
+                    div { p { code { (line(term, names)) } } }
+                    @if let Some(chart) = drawn(term) {
+                        figure { (chart.svg(420.0, 260.0)) figcaption { (chart.legend()) } }
+                    }
+                }
+            }
+        },
+    })
+}
+
+fn chart(picture: &TermPicture) -> Chart {
+    let x_label = match picture.variable {
+        TermVariable::Angle => "angle, rad",
+        TermVariable::Speed => "speed, rad/s",
+        TermVariable::Drive => "torque of the drive, N m",
+    };
+    let y_label = if picture.is_friction {
+        "friction, N m"
+    } else {
+        "torque, N m"
+    };
+    let curve = picture.curve.iter().map(|[x, y]| (*x, *y));
+    let points = picture.points.iter().map(|[x, y, ..]| (*x, *y));
+    let mut measured = Curve::dots("motions", Tone::Ink, points.collect());
+    let ends = picture.points.iter().map(|[_, _, low, high]| [*low, *high]);
+    measured.intervals = ends.collect();
+    let law = Curve::line("law", AFTER, curve.collect());
+    Chart::new(
+        format!("{} over its variable", picture.kind),
+        x_label,
+        y_label,
+        vec![measured, law],
+    )
 }
 
 /// The verdict in a sentence.
@@ -97,19 +157,4 @@ fn others(discovery: &Discovery, names: &JointNames) -> Vec<String> {
         lines.push(format!("and {} more", discovery.others.len() - SHOWN));
     }
     lines
-}
-
-fn next(discovery: &Discovery) -> Vec<String> {
-    match discovery.verdict {
-        DiscoveryVerdict::Unfit => discovery.diagnosis.next.clone(),
-        DiscoveryVerdict::WrongValue => {
-            vec!["fit the value: `handstand fit MODEL LOGS --free PATH -o NEW.toml`".to_string()]
-        }
-        _ if discovery.has_law() => vec![
-            "`-o NEW.toml` writes the model with this law: an `[[expression]]` per term, fitted \
-             like any effect"
-                .to_string(),
-        ],
-        _ => Vec::new(),
-    }
 }

@@ -30,7 +30,7 @@ use handstand::fitting::{Addition, Horizon};
 use handstand::log::{LogRequest, read};
 use handstand::model::{JointNames, edit::moved};
 use handstand::output;
-use handstand::report::{Report, discovery_json, discovery_text, html};
+use handstand::report::{Report, discovery_json, discovery_text, html_with, law_section};
 use handstand::{Model, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -169,10 +169,12 @@ fn report(found: &LogDiscovery, args: &DiscoverArgs, console: &Console) -> Resul
         .iter()
         .map(|(name, model)| (name.as_str(), model, motions.as_slice()));
     let judged_over = diagnosis.horizon_s.map(Horizon::Seconds);
-    Ok(html(&Report {
+    let report = Report {
         title: format!("What {} lacks", model.name),
         comparisons: compare_all(named, args.judging.run.horizon.or(judged_over)),
         diagnosis: Some(diagnosis.clone()),
         provenance: page::provenance(&[&args.model], &found.split, console)?,
-    }))
+    };
+    let law = law_section(&found.discovery, &JointNames::of(model));
+    Ok(html_with(&report, law.into_iter().collect()))
 }

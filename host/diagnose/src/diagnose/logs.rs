@@ -94,7 +94,7 @@ fn turned(logs: &LogSet, diagnosis: &Diagnosis, split: &Split) -> LogSet {
 }
 
 /// A command line to be copied: the files' names in place of what stands for them.
-fn with_names(line: &str, model: &Path, logs: &LogSet) -> String {
+pub(crate) fn with_names(line: &str, model: &Path, logs: &LogSet) -> String {
     // Without logs of its own to judge by, the whole is all there is.
     let line = match logs.held_out.as_slice() {
         [] => line

@@ -49,6 +49,7 @@ pub use findings::{
 };
 pub use inseparable::how_to_measure;
 pub use log_outcome::{LogOutcome, OutcomeFile, OutcomeKey, OutcomeValue, outcomes_in};
+pub(crate) use logs::with_names;
 pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use measured_value::values_behind;
 pub use options::DiagnoseOptions;

@@ -1,5 +1,6 @@
 //! What a discovery says, as plain values for every writer.
 
+use super::picture::TermPicture;
 use crate::diagnose::{Diagnosis, FittedEffect, Verdict};
 use crate::effects::expression::{LawDefinition, LawSite};
 use crate::error::Result;
@@ -61,6 +62,8 @@ pub struct Discovery {
     pub terms: Vec<DiscoveredTerm>,
     /// Other laws that leave as little, each by its terms with values, and what it leaves, rad.
     pub others: Vec<(Vec<DiscoveredTerm>, f64)>,
+    /// Terms beside what the motions say, of which a picture can be drawn.
+    pub pictures: Vec<TermPicture>,
     /// The diagnosis by these terms: errors, intervals, motions, warnings.
     pub diagnosis: Diagnosis,
 }
@@ -79,6 +82,7 @@ impl Discovery {
             others: others
                 .map(|other| (terms(&other.effects), other.error_rad))
                 .collect(),
+            pictures: Vec::new(),
             diagnosis,
         }
     }
@@ -159,8 +163,20 @@ fn term(effect: &FittedEffect, vocabulary: &[LawDefinition]) -> DiscoveredTerm {
         with_values: with_values(&expression, &effect.parameters),
         expression,
         parameters: effect.parameters.clone(),
-        definition: definition.cloned(),
+        definition: definition.map(|term| started_at(term, &effect.parameters)),
     }
+}
+
+/// The term with fits that begin at these values.
+fn started_at(term: &LawDefinition, values: &[FittedValue]) -> LawDefinition {
+    let mut term = term.clone();
+    for parameter in &mut term.parameters {
+        if let Some(found) = values.iter().find(|value| value.key == parameter.key) {
+            let (low, high) = parameter.bounds;
+            parameter.starts = vec![found.value.clamp(low, high)];
+        }
+    }
+    term
 }
 
 /// The plain effects of the library as expressions; others by their name.

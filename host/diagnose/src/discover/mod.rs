@@ -8,20 +8,24 @@
 //! for, by the same search, floor, placebos and intervals.
 
 mod findings;
+mod picture;
 mod scales;
 mod vocabulary;
 
 pub use findings::{DiscoveredTerm, Discovery, DiscoveryVerdict};
+pub use picture::{TermPicture, TermVariable};
 
 use crate::diagnose::conventions::ModelFile;
-use crate::diagnose::{DiagnoseOptions, diagnose_logs};
+use crate::diagnose::words::{HELD_OUT, LOGS, MODEL};
+use crate::diagnose::{DiagnoseOptions, diagnose_logs, with_names};
 use crate::effects::expression::{LawDefinition, effect};
 use crate::effects::{EFFECTS, Effect};
 use crate::error::Result;
-use crate::fitting::Progress;
+use crate::fitting::{Horizon, Progress};
 use crate::log::LogSet;
 use crate::model::Model;
 use crate::motion::{Motion, Split};
+use picture::pictures;
 use scales::Scales;
 use vocabulary::vocabulary;
 
@@ -58,11 +62,39 @@ pub fn discover_logs(
     let mut model = model.clone();
     model.laws.extend(defined(&terms));
     let found = diagnose_logs(&model, file, logs, &of_terms(options), progress)?;
+    let mut discovery = Discovery::new(found.diagnosis, &terms);
+    if discovery.has_law() {
+        discovery.diagnosis.next = next(file, logs);
+        let diagnosis = &discovery.diagnosis;
+        let horizon = diagnosis.search_horizon_s.map(Horizon::Seconds);
+        discovery.pictures = pictures(
+            &discovery.terms,
+            &diagnosis.applied_to(&model),
+            &found.split.training,
+            horizon.unwrap_or(Horizon::Whole),
+        );
+    }
     Ok(LogDiscovery {
-        discovery: Discovery::new(found.diagnosis, &terms),
+        discovery,
         split: found.split,
         model,
     })
+}
+
+/// How the law comes into a model, and what that gains.
+fn next(file: ModelFile, logs: &LogSet) -> Vec<String> {
+    let (judged, holdout) = if logs.held_out.is_empty() {
+        (LOGS, String::new())
+    } else {
+        (HELD_OUT, format!(" --holdout {HELD_OUT}"))
+    };
+    let lines = [
+        format!("Add it: handstand discover {MODEL} {LOGS}{holdout} -o better.toml"),
+        format!("See what it gains: handstand compare {MODEL} {judged} --model better.toml"),
+    ];
+    lines
+        .map(|line| with_names(&line, file.path, logs))
+        .to_vec()
 }
 
 /// Gives a term a name that none of the model's own laws has.

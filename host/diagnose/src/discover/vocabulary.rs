@@ -17,6 +17,9 @@ const PERIODS: [f64; 12] = [
     1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 24.0,
 ];
 
+/// Those of what a link or a coil does.
+const FEW_PERIODS: [f64; 3] = [1.0, 2.0, 3.0];
+
 /// All terms for what these motions cover.
 pub(super) fn vocabulary(at: &Scales) -> Vec<LawDefinition> {
     let terms = [speed(at), angle(at), load(at), friction(at), signals(at)];
@@ -57,6 +60,15 @@ fn share(start: f64) -> LawParameter {
 
 fn exponent(starts: &[f64]) -> LawParameter {
     parameter("exponent", "1", "exponent", starts, (0.2, 6.0))
+}
+
+/// A variable as a share of its scale: "w / 4".
+fn per(variable: &str, scale: f64) -> String {
+    if scale == 1.0 {
+        variable.to_string()
+    } else {
+        format!("{variable} / {scale}")
+    }
 }
 
 /// How much more one way than the other: 1 is one way alone.
@@ -108,14 +120,9 @@ fn width_rad(at: &Scales) -> LawParameter {
     )
 }
 
-fn periods() -> LawParameter {
-    parameter(
-        "periods",
-        "1/turn",
-        "periods per turn",
-        &PERIODS,
-        (0.3, 40.0),
-    )
+fn periods(starts: &[f64]) -> LawParameter {
+    let meaning = "periods per turn";
+    parameter("periods", "1/turn", meaning, starts, (0.3, 40.0))
 }
 
 fn phase_rad() -> LawParameter {
@@ -145,24 +152,24 @@ fn term(
 
 /// Torques that follow from the speed.
 fn speed(at: &Scales) -> Vec<LawDefinition> {
-    let (w, q) = (at.speed_rad_s, at.angle_rad);
+    let (w, q) = (per("w", at.speed_rad_s), per("q", at.angle_rad));
     let torque = |name: &str, expression: String, parameters: Vec<LawParameter>| {
         term(name, LawSite::Torque, expression, parameters)
     };
     vec![
         torque(
             "drag_power",
-            format!("-torque_nm * dir * abs(w / {w})^exponent"),
+            format!("-torque_nm * dir * abs({w})^exponent"),
             vec![torque_nm(at), exponent(&[0.5, 2.0, 3.0])],
         ),
         torque(
             "push_of_speed",
-            format!("torque_nm * abs(w / {w})^exponent"),
+            format!("torque_nm * abs({w})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0])],
         ),
         torque(
             "drag_by_direction",
-            format!("-torque_nm * (dir + skew) / 2 * abs(w / {w})^exponent"),
+            format!("-torque_nm * (dir + skew) / 2 * abs({w})^exponent"),
             vec![torque_nm(at), skew(), exponent(&[1.0, 2.0])],
         ),
         torque(
@@ -182,22 +189,22 @@ fn speed(at: &Scales) -> Vec<LawDefinition> {
         ),
         torque(
             "drag_growing_with_angle",
-            format!("-torque_nm * w / {w} * abs(q / {q})^exponent"),
+            format!("-torque_nm * {w} * abs({q})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0])],
         ),
         torque(
             "drag_changing_over_zero",
-            format!("-torque_nm * w / {w} * q / {q}"),
+            format!("-torque_nm * {w} * {q}"),
             vec![torque_nm(at)],
         ),
         torque(
-            "drag_by_direction_of_link",
-            format!("-torque_nm * w / {w} * sin(q + phase_rad)"),
-            vec![torque_nm(at), phase_rad()],
+            "drag_ripple",
+            format!("-torque_nm * {w} * sin(periods * q + phase_rad)"),
+            vec![torque_nm(at), periods(&FEW_PERIODS), phase_rad()],
         ),
         torque(
             "drag_in_a_place",
-            format!("-torque_nm * w / {w} * exp(-((q - centre_rad) / width_rad)^2)"),
+            format!("-torque_nm * {w} * exp(-((q - centre_rad) / width_rad)^2)"),
             vec![
                 torque_nm(at),
                 centre_rad(at, &[0.2, 0.5, 0.8]),
@@ -209,7 +216,9 @@ fn speed(at: &Scales) -> Vec<LawDefinition> {
 
 /// Torques that follow from the angle.
 fn angle(at: &Scales) -> Vec<LawDefinition> {
-    let q = at.angle_rad;
+    let q = per("q", at.angle_rad);
+    let away = per("(q - centre_rad)", at.angle_rad);
+    let twice = 2.0 * at.angle_rad;
     let torque = |name: &str, expression: String, parameters: Vec<LawParameter>| {
         term(name, LawSite::Torque, expression, parameters)
     };
@@ -217,12 +226,12 @@ fn angle(at: &Scales) -> Vec<LawDefinition> {
         torque("constant", "torque_nm".to_string(), vec![torque_nm(at)]),
         torque(
             "spring_power",
-            format!("-torque_nm * signum(q) * abs(q / {q})^exponent"),
+            format!("-torque_nm * signum(q) * abs({q})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0, 3.0])],
         ),
         torque(
             "spring_about_a_place",
-            format!("-torque_nm * signum(q - centre_rad) * abs((q - centre_rad) / {q})^exponent"),
+            format!("-torque_nm * signum(q - centre_rad) * abs({away})^exponent"),
             vec![
                 torque_nm(at),
                 centre_rad(at, &[0.2, 0.5, 0.8]),
@@ -231,23 +240,17 @@ fn angle(at: &Scales) -> Vec<LawDefinition> {
         ),
         torque(
             "push_of_angle",
-            format!("torque_nm * abs(q / {q})^exponent"),
+            format!("torque_nm * abs({q})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0])],
         ),
         torque(
             "spring_above",
-            format!(
-                "-torque_nm * (q - centre_rad + abs(q - centre_rad)) / {}",
-                2.0 * q
-            ),
+            format!("-torque_nm * (q - centre_rad + abs(q - centre_rad)) / {twice}"),
             vec![torque_nm(at), centre_rad(at, &[0.5, 0.8])],
         ),
         torque(
             "spring_below",
-            format!(
-                "-torque_nm * (q - centre_rad - abs(q - centre_rad)) / {}",
-                2.0 * q
-            ),
+            format!("-torque_nm * (q - centre_rad - abs(q - centre_rad)) / {twice}"),
             vec![torque_nm(at), centre_rad(at, &[0.2, 0.5])],
         ),
         torque(
@@ -271,21 +274,30 @@ fn angle(at: &Scales) -> Vec<LawDefinition> {
             ],
         ),
         torque(
+            "step_at_a_place",
+            "torque_nm * (1 + tanh((q - centre_rad) / width_rad)) / 2".to_string(),
+            vec![
+                torque_nm(at),
+                centre_rad(at, &[0.2, 0.5, 0.8]),
+                width_rad(at),
+            ],
+        ),
+        torque(
             "ripple",
             "torque_nm * sin(periods * q + phase_rad)".to_string(),
-            vec![torque_nm(at), periods(), phase_rad()],
+            vec![torque_nm(at), periods(&PERIODS), phase_rad()],
         ),
         torque(
             "second_ripple",
             "torque_nm * sin(periods * q + phase_rad)".to_string(),
-            vec![torque_nm(at), periods(), phase_rad()],
+            vec![torque_nm(at), periods(&PERIODS), phase_rad()],
         ),
     ]
 }
 
 /// Torques that follow from the torque of the drive: what a gear or a driver does to it.
 fn load(at: &Scales) -> Vec<LawDefinition> {
-    let (w, tau) = (at.speed_rad_s, at.drive_nm);
+    let (w, tau) = (per("w", at.speed_rad_s), per("tau", at.drive_nm));
     let torque = |name: &str, expression: String, parameters: Vec<LawParameter>| {
         term(name, LawSite::Torque, expression, parameters)
     };
@@ -293,12 +305,12 @@ fn load(at: &Scales) -> Vec<LawDefinition> {
     vec![
         torque(
             "drag_under_load",
-            format!("-torque_nm * w / {w} * abs(tau / {tau})"),
+            format!("-torque_nm * {w} * abs({tau})"),
             vec![torque_nm(at)],
         ),
         torque(
             "loss_of_torque_with_speed",
-            format!("-torque_nm * tau / {tau} * abs(w / {w})^exponent"),
+            format!("-torque_nm * {tau} * abs({w})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0])],
         ),
         torque(
@@ -308,23 +320,23 @@ fn load(at: &Scales) -> Vec<LawDefinition> {
         ),
         torque(
             "bent_torque",
-            format!("-torque_nm * signum(tau) * abs(tau / {tau})^exponent"),
+            format!("-torque_nm * signum(tau) * abs({tau})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0, 3.0])],
         ),
         torque(
             "loss_of_torque_by_direction",
-            format!("-torque_nm * (signum(tau) + skew) / 2 * abs(tau / {tau})^exponent"),
+            format!("-torque_nm * (signum(tau) + skew) / 2 * abs({tau})^exponent"),
             vec![torque_nm(at), skew(), exponent(&[1.0, 2.0])],
         ),
         torque(
             "push_of_torque",
-            format!("torque_nm * abs(tau / {tau})^exponent"),
+            format!("torque_nm * abs({tau})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0])],
         ),
         torque(
             "torque_by_angle",
-            "share * tau * sin(q + phase_rad)".to_string(),
-            vec![share(0.05), phase_rad()],
+            "share * tau * sin(periods * q + phase_rad)".to_string(),
+            vec![share(0.05), periods(&FEW_PERIODS), phase_rad()],
         ),
         torque("torque_threshold", limit(""), vec![torque_nm(at)]),
         torque(
@@ -334,7 +346,7 @@ fn load(at: &Scales) -> Vec<LawDefinition> {
         ),
         torque(
             "threshold_with_speed",
-            limit(&format!(" * abs(w / {w})")),
+            limit(&format!(" * abs({w})")),
             vec![torque_nm(at)],
         ),
     ]
@@ -342,14 +354,18 @@ fn load(at: &Scales) -> Vec<LawDefinition> {
 
 /// Frictions: they hold the joint at rest.
 fn friction(at: &Scales) -> Vec<LawDefinition> {
-    let (w, q, tau) = (at.speed_rad_s, at.angle_rad, at.drive_nm);
+    let [w, q, tau] = [
+        per("w", at.speed_rad_s),
+        per("q", at.angle_rad),
+        per("tau", at.drive_nm),
+    ];
     let friction = |name: &str, expression: String, parameters: Vec<LawParameter>| {
         term(name, LawSite::Friction, expression, parameters)
     };
     vec![
         friction(
             "friction_with_speed",
-            format!("torque_nm * abs(w / {w})^exponent"),
+            format!("torque_nm * abs({w})^exponent"),
             vec![torque_nm(at), exponent(&[0.3, 2.0])],
         ),
         friction(
@@ -359,17 +375,17 @@ fn friction(at: &Scales) -> Vec<LawDefinition> {
         ),
         friction(
             "friction_with_angle",
-            format!("torque_nm * abs(q / {q})^exponent"),
+            format!("torque_nm * abs({q})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0])],
         ),
         friction(
             "friction_rising_over_angle",
-            format!("torque_nm * q / {q}"),
+            format!("torque_nm * {q}"),
             vec![torque_nm(at)],
         ),
         friction(
             "friction_by_direction_and_angle",
-            format!("torque_nm * (1 + skew * dir) * abs(q / {q})^exponent"),
+            format!("torque_nm * (1 + skew * dir) * abs({q})^exponent"),
             vec![torque_nm(at), skew(), exponent(&[1.0, 2.0])],
         ),
         friction(
@@ -384,16 +400,16 @@ fn friction(at: &Scales) -> Vec<LawDefinition> {
         friction(
             "friction_ripple",
             "torque_nm * sin(periods * q + phase_rad)".to_string(),
-            vec![torque_nm(at), periods(), phase_rad()],
+            vec![torque_nm(at), periods(&PERIODS), phase_rad()],
         ),
         friction(
             "friction_under_torque",
-            format!("torque_nm * abs(tau / {tau})^exponent"),
+            format!("torque_nm * abs({tau})^exponent"),
             vec![torque_nm(at), exponent(&[1.0, 2.0])],
         ),
         friction(
             "friction_under_torque_with_speed",
-            format!("torque_nm * abs(tau / {tau}) * abs(w / {w})"),
+            format!("torque_nm * abs({tau}) * abs({w})"),
             vec![torque_nm(at)],
         ),
         friction(
@@ -406,27 +422,28 @@ fn friction(at: &Scales) -> Vec<LawDefinition> {
 
 /// What follows from the input, the supply and the time.
 fn signals(at: &Scales) -> Vec<LawDefinition> {
-    let (w, input, time) = (at.speed_rad_s, at.input, at.time_s);
+    let (w, input) = (per("w", at.speed_rad_s), per("input", at.input));
+    let time = per("time", at.time_s);
     let torque = |name: &str, expression: String, parameters: Vec<LawParameter>| {
         term(name, LawSite::Torque, expression, parameters)
     };
-    let bounds = (1e-2 * time, 10.0 * time);
-    let starts = [0.1 * time, 0.5 * time];
+    let bounds = (1e-2 * at.time_s, 10.0 * at.time_s);
+    let starts = [0.1 * at.time_s, 0.5 * at.time_s];
     let time_s = parameter("time_s", "s", "time in which it comes", &starts, bounds);
     let mut terms = vec![
         torque(
             "push_of_input",
-            format!("torque_nm * abs(input / {input})"),
+            format!("torque_nm * abs({input})"),
             vec![torque_nm(at)],
         ),
         torque(
             "push_with_time",
-            format!("torque_nm * time / {time}"),
+            format!("torque_nm * {time}"),
             vec![torque_nm(at)],
         ),
         torque(
             "drag_with_time",
-            format!("-torque_nm * w / {w} * time / {time}"),
+            format!("-torque_nm * {w} * {time}"),
             vec![torque_nm(at)],
         ),
         torque(
@@ -437,7 +454,7 @@ fn signals(at: &Scales) -> Vec<LawDefinition> {
         term(
             "friction_with_time",
             LawSite::Friction,
-            format!("torque_nm * time / {time}"),
+            format!("torque_nm * {time}"),
             vec![torque_nm(at)],
         ),
     ];
