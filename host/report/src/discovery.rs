@@ -123,8 +123,8 @@ fn sentence(verdict: DiscoveryVerdict) -> &'static str {
             "found, and not alone. Other laws leave as little: the logs do not tell them apart."
         }
         DiscoveryVerdict::Partial => {
-            "a part. This law removes a part of the error; more than noise is left, and no third \
-             term explains it."
+            "a part. This law removes a part of the error; more than noise is left, and more \
+             terms do not explain it."
         }
         DiscoveryVerdict::NotFound => {
             "not found. No law of the joint's angle, speed, load, input, supply or time explains \

@@ -154,7 +154,7 @@ fn term(effect: &FittedEffect, vocabulary: &[LawDefinition]) -> DiscoveredTerm {
     let definition = vocabulary.iter().find(|term| term.name == effect.kind);
     let (site, expression) = match definition {
         Some(term) => (term.site, term.expression.clone()),
-        None => library_law(&effect.kind),
+        None => library_law(effect),
     };
     DiscoveredTerm {
         kind: effect.kind.clone(),
@@ -180,10 +180,11 @@ fn started_at(term: &LawDefinition, values: &[FittedValue]) -> LawDefinition {
 }
 
 /// The plain effects of the library as expressions; others by their name.
-fn library_law(id: &str) -> (LawSite, String) {
-    match id {
-        "coulomb" => (LawSite::Friction, "torque_nm".to_string()),
-        "viscous" => (LawSite::Torque, "-coefficient_nm_s_rad * w".to_string()),
+fn library_law(effect: &FittedEffect) -> (LawSite, String) {
+    let key = effect.parameters.first().map_or("", |value| &value.key);
+    match effect.kind.as_str() {
+        "coulomb" => (LawSite::Friction, key.to_string()),
+        "viscous" => (LawSite::Torque, format!("-{key} * w")),
         other => (LawSite::Torque, other.to_string()),
     }
 }
@@ -200,7 +201,7 @@ fn with_values(expression: &str, values: &[FittedValue]) -> String {
         };
         let (word, behind) = rest.split_at(end);
         match values.iter().find(|value| value.key == word) {
-            Some(value) => said.push_str(&number(value.value)),
+            Some(value) => push_number(&mut said, value.value),
             None => said.push_str(word),
         }
         rest = behind;
@@ -208,12 +209,47 @@ fn with_values(expression: &str, values: &[FittedValue]) -> String {
     said
 }
 
-/// Three digits; a law can hold it, in parentheses where it is below zero.
-fn number(value: f64) -> String {
+/// Three digits behind what was said so far, their sign one with that before them.
+fn push_number(said: &mut String, value: f64) {
     let digits: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    if digits < 0.0 {
-        format!("({digits})")
-    } else {
-        digits.to_string()
+    if digits >= 0.0 {
+        *said += &digits.to_string();
+        return;
+    }
+    let size = -digits;
+    let signs = [("+ ", "- "), ("- ", "+ "), ("-", "")];
+    match signs.into_iter().find(|(sign, _)| said.ends_with(sign)) {
+        Some((sign, other)) => {
+            said.truncate(said.len() - sign.len());
+            *said += &format!("{other}{size}");
+        }
+        None if said.is_empty() || said.ends_with('(') => *said += &format!("-{size}"),
+        None => *said += &format!("(-{size})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_in_a_law_as_one_would_write_them() {
+        let value = |key: &str, value: f64| FittedValue {
+            path: String::new(),
+            key: key.to_string(),
+            unit: String::new(),
+            value,
+            low: value,
+            high: value,
+            on_bound: false,
+        };
+        let said = |law: &str, a: f64, b: f64| with_values(law, &[value("a", a), value("b", b)]);
+        assert_eq!(
+            said("-a * dir * abs(w)^b", 0.07642, 3.0),
+            "-0.0764 * dir * abs(w)^3"
+        );
+        assert_eq!(said("-a * (q - b)", -0.5, -0.25), "0.5 * (q + 0.25)");
+        assert_eq!(said("a * sin(q + b)", -0.5, -0.25), "-0.5 * sin(q - 0.25)");
+        assert_eq!(said("w * a / ab", -0.5, 1.0), "w * (-0.5) / ab");
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct Scales {
     pub input: f64,
     /// Longest motion, s.
     pub time_s: f64,
+    /// Whether all joints slide: then rad is m, and N m is N.
+    pub slides: bool,
     /// Whether the supply is logged and moves.
     pub supply_moves: bool,
 }
@@ -67,6 +69,7 @@ impl Scales {
             term_nm: one_digit(TERM_SHARE * most(|r| r.torque_nm).max(1e-6)),
             input: one_digit(input.max(1e-3)),
             time_s: one_digit(lasts.fold(0.1, f64::max)),
+            slides: model.joints.iter().all(|joint| joint.slide.is_some()),
             supply_moves: most_v - least_v > SUPPLY_MOVES * most_v,
         }
     }

@@ -14,13 +14,22 @@ fn scales() -> Scales {
         term_nm: 0.02,
         input: 1.0,
         time_s: 20.0,
+        slides: false,
         supply_moves: true,
     }
 }
 
 #[test]
 fn every_term_is_a_law_with_a_name_and_values_of_its_own() {
-    let terms = vocabulary(&scales());
+    let slides = Scales {
+        slides: true,
+        ..scales()
+    };
+    [scales(), slides].iter().for_each(are_laws);
+}
+
+fn are_laws(scales: &Scales) {
+    let terms = vocabulary(scales);
     let effects = defined(&terms);
     for (term, effect) in terms.iter().zip(&effects) {
         assert_eq!(effect.info().id, term.name);

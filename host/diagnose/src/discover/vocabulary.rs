@@ -10,6 +10,10 @@ use super::scales::Scales;
 use crate::effects::expression::{LawDefinition, LawParameter, LawSite};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+/// The one angle that slides have, too.
+const PHASE: &str = "phase_rad";
+/// Unit of a ripple over an angle.
+const PER_TURN: &str = "1/turn";
 /// How many times a term worth a look a size may be, either way.
 const LARGEST: f64 = 200.0;
 /// Periods per turn of a ripple.
@@ -23,7 +27,35 @@ const FEW_PERIODS: [f64; 3] = [1.0, 2.0, 3.0];
 /// All terms for what these motions cover.
 pub(super) fn vocabulary(at: &Scales) -> Vec<LawDefinition> {
     let terms = [speed(at), angle(at), load(at), friction(at), signals(at)];
-    terms.into_iter().flatten().collect()
+    let terms = terms.into_iter().flatten();
+    if at.slides {
+        terms.map(on_slide).collect()
+    } else {
+        terms.collect()
+    }
+}
+
+/// The term in the units of joints that slide.
+fn on_slide(mut term: LawDefinition) -> LawDefinition {
+    let other = |name: &str| {
+        let pairs = [("torque_nm", "force_n"), ("_rad_s", "_m_s"), ("_rad", "_m")];
+        let pairs = pairs.into_iter().filter(|(from, _)| name.ends_with(from));
+        let mut pairs = pairs.map(|(from, to)| name.replace(from, to));
+        // An angle of a sine stays one.
+        pairs.next().filter(|_| name != PHASE)
+    };
+    for parameter in &mut term.parameters {
+        if let Some(key) = other(&parameter.key) {
+            term.expression = term.expression.replace(&parameter.key, &key);
+            parameter.key = key;
+            let unit = parameter.unit.replace("N m", "N").replace("rad", "m");
+            parameter.unit = unit;
+        } else if parameter.unit == PER_TURN {
+            parameter.unit = "rad/m".to_string();
+        }
+    }
+    term.slides = true;
+    term
 }
 
 fn parameter(
@@ -122,7 +154,7 @@ fn width_rad(at: &Scales) -> LawParameter {
 
 fn periods(starts: &[f64]) -> LawParameter {
     let meaning = "periods per turn";
-    parameter("periods", "1/turn", meaning, starts, (0.3, 40.0))
+    parameter("periods", PER_TURN, meaning, starts, (0.3, 40.0))
 }
 
 fn phase_rad() -> LawParameter {
@@ -147,6 +179,7 @@ fn term(
         site,
         expression,
         parameters: parameters.into_iter().collect(),
+        slides: false,
     }
 }
 
@@ -217,7 +250,10 @@ fn speed(at: &Scales) -> Vec<LawDefinition> {
 /// Torques that follow from the angle.
 fn angle(at: &Scales) -> Vec<LawDefinition> {
     let q = per("q", at.angle_rad);
-    let away = per("(q - centre_rad)", at.angle_rad);
+    let away = match at.angle_rad {
+        1.0 => "q - centre_rad".to_string(),
+        scale => format!("(q - centre_rad) / {scale}"),
+    };
     let twice = 2.0 * at.angle_rad;
     let torque = |name: &str, expression: String, parameters: Vec<LawParameter>| {
         term(name, LawSite::Torque, expression, parameters)

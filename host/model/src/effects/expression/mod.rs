@@ -70,6 +70,8 @@ pub struct LawDefinition {
     pub expression: String,
     /// Its parameters.
     pub parameters: Vec<LawParameter>,
+    /// Whether it has a meaning where a joint slides: in m, m/s and N.
+    pub slides: bool,
 }
 
 /// What of a definition is wrong.
@@ -255,7 +257,11 @@ fn info(definition: &LawDefinition, off: &[Option<f64>]) -> &'static EffectInfo 
             LawSite::Friction => Site::Friction,
         },
         needs: Needs::Nothing,
-        on_slide: OnSlide::Never,
+        on_slide: if definition.slides {
+            OnSlide::Same
+        } else {
+            OnSlide::Never
+        },
         parameters: Box::leak(parameters.into_boxed_slice()),
         looks_like: "what its law says",
         confused_with: &[],

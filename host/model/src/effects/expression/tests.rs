@@ -16,6 +16,7 @@ fn definition(torque: &str) -> LawDefinition {
         site: LawSite::Torque,
         expression: torque.into(),
         parameters: vec![parameter("c"), parameter("exponent")],
+        slides: true,
     }
 }
 

@@ -35,6 +35,7 @@ fn law(table: &Table) -> Result<Effect> {
         site,
         expression: table.required_text(site.key())?.to_string(),
         parameters: parameters.iter().map(parameter).collect::<Result<_>>()?,
+        slides: true,
     };
     effect(&definition).map_err(|fault| match fault {
         DefinitionFault::Name(reason) => table.bad("name", reason),
