@@ -17,7 +17,7 @@ mod session;
 
 use handstand_challenge as challenge;
 use handstand_control::{study, synth};
-use handstand_diagnose::{diagnose, experiment, first_model};
+use handstand_diagnose::{diagnose, discover, experiment, first_model};
 use handstand_link as link;
 use handstand_logs as log;
 use handstand_model::{effects, error, model, motion, output};

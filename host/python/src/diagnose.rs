@@ -102,7 +102,7 @@ pub fn diagnose(
 }
 
 /// A limit of time, s.
-fn seconds(within_s: f64) -> handstand::Result<f64> {
+pub fn seconds(within_s: f64) -> handstand::Result<f64> {
     if within_s > 0.0 && within_s <= 3.2e7 {
         Ok(within_s)
     } else {

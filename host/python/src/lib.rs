@@ -7,6 +7,7 @@
 mod arrays;
 mod compare;
 mod diagnose;
+mod discover;
 mod draft;
 mod drift;
 mod effects;
@@ -29,6 +30,8 @@ mod native {
     use crate::compare::{Comparison, compare};
     #[pymodule_export]
     use crate::diagnose::{Diagnosis, diagnose};
+    #[pymodule_export]
+    use crate::discover::{Discovery, discover};
     #[pymodule_export]
     use crate::draft::{Draft, init};
     #[pymodule_export]

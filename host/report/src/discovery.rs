@@ -20,7 +20,7 @@ const SHOWN: usize = 5;
 /// Everything a discovery says that fits a terminal.
 pub fn discovery_text(discovery: &Discovery, names: &JointNames) -> String {
     let diagnosis = &discovery.diagnosis;
-    let mut headline = vec![format!("Verdict: {}", sentence(discovery.verdict))];
+    let mut headline = vec![format!("Verdict: {}", verdict_sentence(discovery.verdict))];
     if discovery.verdict == DiscoveryVerdict::Unfit {
         headline.extend(diagnosis.summary.iter().cloned());
     }
@@ -62,7 +62,7 @@ pub fn law_section(discovery: &Discovery, names: &JointNames) -> Option<Section>
     }
     let drawn = |term: &DiscoveredTerm| {
         let own = |p: &&TermPicture| p.kind == term.kind && Some(p.joint) == term.joint;
-        discovery.pictures.iter().find(own).map(chart)
+        discovery.pictures.iter().find(own).map(term_chart)
     };
     Some(Section {
         id: "law",
@@ -71,7 +71,7 @@ pub fn law_section(discovery: &Discovery, names: &JointNames) -> Option<Section>
                torque over this variable is allowed, with 95 % intervals; where they leave the \
                curve its shape is wrong.",
         body: html! {
-            p { (sentence(discovery.verdict)) }
+            p { (verdict_sentence(discovery.verdict)) }
             @for term in &discovery.terms {
                 div.effect {
                     div { p { code { (line(term, names)) } } }
@@ -84,7 +84,8 @@ pub fn law_section(discovery: &Discovery, names: &JointNames) -> Option<Section>
     })
 }
 
-fn chart(picture: &TermPicture) -> Chart {
+/// A term beside what the motions say.
+pub fn term_chart(picture: &TermPicture) -> Chart {
     let x_label = match picture.variable {
         TermVariable::Angle => "angle, rad",
         TermVariable::Speed => "speed, rad/s",
@@ -110,7 +111,7 @@ fn chart(picture: &TermPicture) -> Chart {
 }
 
 /// The verdict in a sentence.
-fn sentence(verdict: DiscoveryVerdict) -> &'static str {
+pub fn verdict_sentence(verdict: DiscoveryVerdict) -> &'static str {
     match verdict {
         DiscoveryVerdict::NothingMissing => {
             "nothing is missing. The model explains the logs to their noise."

@@ -25,7 +25,7 @@ use super::{Console, ExitStatus, input};
 use handstand::compare::compare_all;
 use handstand::diagnose::DiagnoseOptions;
 use handstand::diagnose::conventions::ModelFile;
-use handstand::discover::{Discovery, DiscoveryVerdict, LogDiscovery, discover_logs};
+use handstand::discover::{Discovery, DiscoveryVerdict, LogDiscovery, MOST_TERMS, discover_logs};
 use handstand::fitting::{Addition, Horizon};
 use handstand::log::{LogRequest, read};
 use handstand::model::{JointNames, edit::moved};
@@ -47,7 +47,7 @@ pub struct DiscoverArgs {
     #[arg(long, short, value_name = "NEW.toml")]
     output: Option<PathBuf>,
     /// Most terms of the law
-    #[arg(long, value_name = "N", default_value_t = 2)]
+    #[arg(long, value_name = "N", default_value_t = MOST_TERMS as u8)]
     #[arg(value_parser = clap::value_parser!(u8).range(1..=3))]
     terms: u8,
     /// Value of the file that was measured by itself, and is right

@@ -5,7 +5,7 @@ use handstand::challenge::{Bench, Motions, UnknownLaw, bench, unknown_law_arm};
 use handstand::compare::compare;
 use handstand::diagnose::DiagnoseOptions;
 use handstand::diagnose::conventions::ModelFile;
-use handstand::discover::{Discovery, DiscoveryVerdict, discover_logs};
+use handstand::discover::{Discovery, DiscoveryVerdict, MOST_TERMS, discover_logs};
 use handstand::fitting::Horizon;
 use handstand::log::{LogRequest, LogSet, read};
 use handstand::motion::Motion;
@@ -111,7 +111,7 @@ fn tried(
         text: &bench.model_toml,
     };
     let options = DiagnoseOptions {
-        most_effects: 2,
+        most_effects: MOST_TERMS,
         ..DiagnoseOptions::default()
     };
     let begun = Instant::now();

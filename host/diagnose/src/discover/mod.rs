@@ -17,7 +17,7 @@ pub use picture::{TermPicture, TermVariable};
 
 use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::words::{HELD_OUT, LOGS, MODEL};
-use crate::diagnose::{DiagnoseOptions, diagnose_logs, with_names};
+use crate::diagnose::{DiagnoseOptions, LogDiagnosis, diagnose, diagnose_logs, with_names};
 use crate::effects::expression::{LawDefinition, effect};
 use crate::effects::{EFFECTS, Effect};
 use crate::error::Result;
@@ -28,6 +28,9 @@ use crate::motion::{Motion, Split};
 use picture::pictures;
 use scales::Scales;
 use vocabulary::vocabulary;
+
+/// Most terms of a law that is not asked for more.
+pub const MOST_TERMS: usize = 2;
 
 /// Effects of the library that a law may need beside its terms.
 const PLAIN: [&str; 2] = ["coulomb", "viscous"];
@@ -57,28 +60,75 @@ pub fn discover_logs(
 ) -> Result<LogDiscovery> {
     let named = logs.read(&model.log)?;
     let motions: Vec<Motion> = named.training.into_iter().chain(named.held_out).collect();
-    let mut terms = vocabulary(&Scales::of(model, &motions));
-    terms.iter_mut().for_each(|term| rename(term, &model.laws));
-    let mut model = model.clone();
-    model.laws.extend(defined(&terms));
-    let found = diagnose_logs(&model, file, logs, &of_terms(options), progress)?;
-    let mut discovery = Discovery::new(found.diagnosis, &terms);
-    if discovery.has_law() {
-        discovery.diagnosis.next = next(file, logs);
-        let diagnosis = &discovery.diagnosis;
-        let horizon = diagnosis.search_horizon_s.map(Horizon::Seconds);
-        discovery.pictures = pictures(
-            &discovery.terms,
-            &diagnosis.applied_to(&model),
-            &found.split.training,
-            horizon.unwrap_or(Horizon::Whole),
-        );
+    let terms = Terms::of(model, &motions);
+    let found = diagnose_logs(&terms.model, file, logs, &of_terms(options), progress)?;
+    let mut found = terms.discovery(found);
+    if found.discovery.has_law() {
+        found.discovery.diagnosis.next = next(file, logs);
     }
-    Ok(LogDiscovery {
-        discovery,
-        split: found.split,
-        model,
-    })
+    Ok(found)
+}
+
+/// The same of motions, of which those held out judge.
+pub fn discover(
+    model: &Model,
+    split: Split,
+    options: &DiagnoseOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> LogDiscovery {
+    let motions: Vec<Motion> = split
+        .training
+        .iter()
+        .chain(&split.held_out)
+        .cloned()
+        .collect();
+    let terms = Terms::of(model, &motions);
+    let Split { training, held_out } = split.clone();
+    let options = of_terms(options);
+    let mut diagnosis = diagnose(&terms.model, training, held_out, &options, progress);
+    diagnosis.next.clear();
+    terms.discovery(LogDiagnosis { diagnosis, split })
+}
+
+/// A model with every term as a law of its own.
+struct Terms {
+    model: Model,
+    definitions: Vec<LawDefinition>,
+}
+
+impl Terms {
+    /// Scaled by what these motions cover.
+    fn of(model: &Model, motions: &[Motion]) -> Terms {
+        let mut definitions = vocabulary(&Scales::of(model, motions));
+        let mut model = model.clone();
+        definitions
+            .iter_mut()
+            .for_each(|term| rename(term, &model.laws));
+        model.laws.extend(defined(&definitions));
+        Terms { model, definitions }
+    }
+
+    /// What a diagnosis by these terms says of a law.
+    fn discovery(self, found: LogDiagnosis) -> LogDiscovery {
+        let Terms { model, definitions } = self;
+        let LogDiagnosis { diagnosis, split } = found;
+        let mut discovery = Discovery::new(diagnosis, &definitions);
+        if discovery.has_law() {
+            let diagnosis = &discovery.diagnosis;
+            let horizon = diagnosis.search_horizon_s.map(Horizon::Seconds);
+            discovery.pictures = pictures(
+                &discovery.terms,
+                &diagnosis.applied_to(&model),
+                &split.training,
+                horizon.unwrap_or(Horizon::Whole),
+            );
+        }
+        LogDiscovery {
+            discovery,
+            model,
+            split,
+        }
+    }
 }
 
 /// How the law comes into a model, and what that gains.

@@ -14,7 +14,7 @@ use crate::model::{EffectInstance, Model};
 use crate::motion::Motion;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Corners of the polygon.
 const CORNERS: usize = 13;
@@ -26,7 +26,7 @@ const KNOWN: f64 = 0.5;
 const TWO_SIGMA: f64 = 1.96;
 
 /// What a term depends on, where that is one thing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TermVariable {
     /// Angle of the joint, rad.
@@ -38,7 +38,7 @@ pub enum TermVariable {
 }
 
 /// A term beside what the motions say.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TermPicture {
     /// The term's name.
     pub kind: String,

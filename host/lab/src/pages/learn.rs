@@ -127,6 +127,11 @@ fn ask(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
                 input type="hidden" name="names" value="";
                 button data-work { "Fit the model's free values" }
             }
+            @if lacks_a_law(saved) {
+                form data-send="discover" {
+                    button #discover data-work { "Look for a law that the library lacks" }
+                }
+            }
             @if proposes {
                 form data-send="next" {
                     button #next data-work { "Which experiment next?" }
@@ -140,6 +145,12 @@ fn ask(saved: &SavedSession, evaluation: &SessionEvaluation) -> Markup {
                     "this one is moved by hand: let it go from other angles." } }
         }
     }
+}
+
+/// Whether no effect of the library explains what the model in force leaves.
+fn lacks_a_law(saved: &SavedSession) -> bool {
+    let said = saved.diagnosis.as_ref();
+    said.is_some_and(|said| said.step == saved.current && said.verdict == "unexplained")
 }
 
 fn said(

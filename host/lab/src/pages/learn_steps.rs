@@ -1,9 +1,11 @@
 //! The steps taken: error bars, undo, notes, files to keep.
 
 use super::{in_milli, values};
+use crate::discover::TermPicture;
 use crate::error::Result;
 use crate::output::number::{NONE, percent};
 use crate::plot::{Bar, Tone, largest};
+use crate::report::term_chart;
 use crate::session::{LabSession, SavedSession, SavedStep, SessionEvaluation};
 use maud::{Markup, html};
 use std::sync::Arc;
@@ -64,6 +66,7 @@ pub fn steps(session: &LabSession, saved: &SavedSession) -> Result<Markup> {
         @if let Some(step) = saved.step().filter(|step| !step.values.is_empty()) {
             h2 { "Values of model " (saved.current) ", as fitted" }
             (values::table(step))
+            @for picture in &step.pictures { (pictured(picture)) }
         }
         div.row {
             (undo(saved))
@@ -73,6 +76,18 @@ pub fn steps(session: &LabSession, saved: &SavedSession) -> Result<Markup> {
             a href={ "/s/" (session.number) "/compare" } { "See the curves" }
         }
     })
+}
+
+/// A term of a law that was discovered.
+fn pictured(picture: &TermPicture) -> Markup {
+    let chart = term_chart(picture);
+    html! {
+        figure.law {
+            (chart.svg(420.0, 260.0))
+            figcaption { (chart.legend())
+                " Dots: what the motions ask for where any torque is allowed, with 95 % intervals." }
+        }
+    }
 }
 
 fn drawn(row: &StepError, before: Option<f64>, full: f64, saved: &SavedSession) -> Markup {

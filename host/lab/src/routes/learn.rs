@@ -75,6 +75,21 @@ pub(super) async fn diagnose(
     begin(&lab, number, &shown, "diagnosis", LabSession::diagnose)
 }
 
+/// Begins to look for a law that the library lacks.
+pub(super) async fn discover(
+    State(lab): State<Arc<LabState>>,
+    Path(number): Path<u32>,
+    shown: ShownModel,
+) -> Answer {
+    begin(
+        &lab,
+        number,
+        &shown,
+        "search for a law",
+        LabSession::discover,
+    )
+}
+
 #[derive(Debug, Deserialize)]
 pub(super) struct EffectNames {
     /// Addresses between `+`.

@@ -57,6 +57,7 @@ pub(super) fn all() -> Router<Arc<LabState>> {
         .route("/s/{number}/horizon", post(compare::horizon))
         .route("/s/{number}/learn", get(learn::show))
         .route("/s/{number}/diagnose", post(learn::diagnose))
+        .route("/s/{number}/discover", post(learn::discover))
         .route("/s/{number}/add", post(learn::add))
         .route("/s/{number}/fit", post(learn::fit))
         .route("/s/{number}/next", post(next::propose))

@@ -76,6 +76,17 @@ impl SavedSession {
         )
     }
 
+    /// `handstand discover` of the present step.
+    pub fn discover_command(&self) -> String {
+        format!(
+            "handstand discover {} {}{} -o {}",
+            model_file(self.current).display(),
+            self.training_words(),
+            self.judging_words(self.window.by_hand()),
+            model_file(self.current + 1).display()
+        )
+    }
+
     /// `handstand fit` of values of the present step, within bounds.
     pub fn fit_command(&self, values: &[String], bounds: &[ChosenBounds]) -> String {
         let free = values

@@ -4,6 +4,7 @@ use super::card::SavedDiagnosis;
 use super::kept::KeptDiagnosis;
 use super::round::Round;
 use super::view::LeftOutLog;
+use crate::discover::TermPicture;
 use crate::error::{Error, Place, Result};
 use crate::fitting::{FittedValue, Horizon};
 use crate::log::LogRequest;
@@ -109,6 +110,9 @@ pub struct SavedStep {
     /// Values that a fit gave it, with their intervals.
     #[serde(default)]
     pub values: Vec<SavedValue>,
+    /// Terms of a discovered law beside what the motions say.
+    #[serde(default)]
+    pub pictures: Vec<TermPicture>,
 }
 
 /// A fitted value with its 95 % interval, in SI units.
@@ -152,6 +156,7 @@ impl SavedStep {
             command: None,
             note: String::new(),
             values: Vec::new(),
+            pictures: Vec::new(),
         }
     }
 }

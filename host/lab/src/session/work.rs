@@ -9,12 +9,14 @@ use super::names::{effect_name, listed, value_name};
 use super::saved::{SavedSession, SavedStep, SavedValue};
 use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::{DiagnoseOptions, Diagnosis, diagnose_logs};
+use crate::discover::{MOST_TERMS, discover_logs};
 use crate::error::{Error, Result};
 use crate::fitting::{
     Addition, Refitted, Undetermined, add_effects, candidates_named, freed, refit, with_refitted,
 };
 use crate::model::edit::set_bounds;
 use crate::model::{Model, ParameterPath};
+use crate::report::verdict_sentence;
 use serde::Deserialize;
 use std::path::Path;
 use std::sync::PoisonError;
@@ -39,9 +41,8 @@ impl LabSession {
     ) -> Result<(DiagnosedFiles, Diagnosis)> {
         let model = self.model_at(view)?;
         let options = DiagnoseOptions {
-            horizon: view.window.by_hand(),
             stop: report.stop_switch().clone(),
-            ..DiagnoseOptions::default()
+            ..options(view)
         };
         let (path, logs) = (self.model_path(view.current), self.log_set(view));
         let file = ModelFile {
@@ -119,6 +120,7 @@ impl LabSession {
                 command: Some(view.add_command(names)),
                 note: String::new(),
                 values,
+                pictures: Vec::new(),
             },
         )
     }
@@ -157,6 +159,56 @@ impl LabSession {
                 command: Some(view.fit_command(named, bounds)),
                 note: String::new(),
                 values: saved_values(&refitted),
+                pictures: Vec::new(),
+            },
+        )
+    }
+
+    /// Looks for a law that the library lacks, and adds it to the model in force as a new step.
+    ///
+    /// # Errors
+    /// Logs that cannot be read or learned from; logs that ask for no such law.
+    pub fn discover(&self, report: &JobReport) -> Result<()> {
+        let begun = self.saved();
+        let view = self.view_of(begun.clone());
+        let model = self.model_at(&view)?;
+        let options = DiagnoseOptions {
+            stop: report.stop_switch().clone(),
+            most_effects: MOST_TERMS,
+            ..options(&view)
+        };
+        let (path, logs) = (self.model_path(view.current), self.log_set(&view));
+        let text = self.toml(&view)?;
+        let file = ModelFile { path: &path, text };
+        let found = discover_logs(&model, file, &logs, &options, &|p| report.hear(p))?;
+        let discovery = found.discovery;
+        if !discovery.has_law() {
+            return Err(Error::usage(
+                verdict_sentence(discovery.verdict),
+                "bring a motion that shows more, or mend what the check of the logs says",
+            ));
+        }
+        let horizon = view.window.by_hand();
+        let hear = |progress| report.hear(progress);
+        let added = discovery.added_to(text, &path, &found.split, horizon, &hear)?;
+        let names = discovery.addresses();
+        let (toml, refitted) = match added {
+            Addition::Added { text, refitted } => (text, refitted),
+            Addition::Unhelpful(why) => return Err(Error::usage(why.why(&names), why.remedy())),
+            Addition::Undetermined(why) => return Err(undetermined(&why)),
+        };
+        let terms = discovery.terms.iter();
+        let law = terms.map(|term| format!("{} = {}", term.site, term.with_values));
+        self.keep_step(
+            report,
+            &begun,
+            SavedStep {
+                title: format!("law added: {}", listed(&law.collect::<Vec<_>>())),
+                toml,
+                command: Some(view.discover_command()),
+                note: String::new(),
+                values: saved_values(&refitted),
+                pictures: discovery.pictures,
             },
         )
     }
@@ -176,6 +228,14 @@ impl LabSession {
     fn toml<'a>(&self, saved: &'a SavedSession) -> Result<&'a str> {
         let step = saved.step().map(|step| step.toml.as_str());
         step.ok_or_else(no_model)
+    }
+}
+
+/// How a view is diagnosed.
+fn options(view: &SavedSession) -> DiagnoseOptions {
+    DiagnoseOptions {
+        horizon: view.window.by_hand(),
+        ..DiagnoseOptions::default()
     }
 }
 

@@ -152,6 +152,16 @@ class Diagnosis:
     def _repr_html_(self) -> str: ...
 
 @final
+class Discovery:
+    @property
+    def verdict(self) -> str: ...
+    @property
+    def terms(self) -> list[str]: ...
+    @property
+    def model(self) -> Model | None: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+@final
 class Refit:
     @property
     def model(self) -> Model: ...
@@ -280,6 +290,18 @@ def diagnose(
     within_s: float | None = None,
     progress: _Progress | None = None,
 ) -> Diagnosis: ...
+def discover(
+    model: Model,
+    logs: _Logs,
+    *,
+    holdout: _Logs | None = None,
+    terms: int = 2,
+    known: Sequence[str] = ...,
+    seed: int | None = None,
+    horizon_s: _Horizon | None = None,
+    within_s: float | None = None,
+    progress: _Progress | None = None,
+) -> Discovery: ...
 def add(
     model: Model,
     effects: str | Sequence[str],

@@ -6,6 +6,7 @@ mod gains;
 mod http;
 mod in_space;
 mod kept;
+mod law;
 mod live;
 mod made;
 mod models;
