@@ -121,7 +121,7 @@ fn discovered(
             }
             let split = Split::told_apart(training, held_out)?;
             let split = handstand::motion::split(split.training, split.held_out);
-            handstand::discover::discover(&model.inner, split, options, tell)
+            handstand::discover::discover(&model.inner, split, options, tell)?
         }
     };
     let model = with_law(&found, &model, options.horizon, tell)?;

@@ -113,7 +113,11 @@ impl Discovery {
             .iter()
             .filter_map(|term| term.definition.as_ref())
         {
-            if !definitions.contains(&definition) {
+            // At several joints it is one law, and starts may differ.
+            if definitions
+                .iter()
+                .all(|known| known.name != definition.name)
+            {
                 definitions.push(definition);
             }
         }

@@ -18,9 +18,9 @@ pub use picture::{TermPicture, TermVariable};
 use crate::diagnose::conventions::ModelFile;
 use crate::diagnose::words::{HELD_OUT, LOGS, MODEL};
 use crate::diagnose::{DiagnoseOptions, LogDiagnosis, diagnose, diagnose_logs, with_names};
-use crate::effects::expression::{LawDefinition, effect};
+use crate::effects::expression::{DefinitionFault, LawDefinition, effect};
 use crate::effects::{EFFECTS, Effect};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fitting::{Horizon, Progress};
 use crate::log::LogSet;
 use crate::model::Model;
@@ -60,7 +60,7 @@ pub fn discover_logs(
 ) -> Result<LogDiscovery> {
     let named = logs.read(&model.log)?;
     let motions: Vec<Motion> = named.training.into_iter().chain(named.held_out).collect();
-    let terms = Terms::of(model, &motions);
+    let terms = Terms::of(model, &motions)?;
     let found = diagnose_logs(&terms.model, file, logs, &of_terms(options), progress)?;
     let mut found = terms.discovery(found);
     if found.discovery.has_law() {
@@ -70,24 +70,27 @@ pub fn discover_logs(
 }
 
 /// The same of motions, of which those held out judge.
+///
+/// # Errors
+/// More laws than one run of the program keeps.
 pub fn discover(
     model: &Model,
     split: Split,
     options: &DiagnoseOptions,
     progress: &(dyn Fn(Progress) + Sync),
-) -> LogDiscovery {
+) -> Result<LogDiscovery> {
     let motions: Vec<Motion> = split
         .training
         .iter()
         .chain(&split.held_out)
         .cloned()
         .collect();
-    let terms = Terms::of(model, &motions);
+    let terms = Terms::of(model, &motions)?;
     let Split { training, held_out } = split.clone();
     let options = of_terms(options);
     let mut diagnosis = diagnose(&terms.model, training, held_out, &options, progress);
     diagnosis.next.clear();
-    terms.discovery(LogDiagnosis { diagnosis, split })
+    Ok(terms.discovery(LogDiagnosis { diagnosis, split }))
 }
 
 /// A model with every term as a law of its own.
@@ -98,14 +101,14 @@ struct Terms {
 
 impl Terms {
     /// Scaled by what these motions cover.
-    fn of(model: &Model, motions: &[Motion]) -> Terms {
+    fn of(model: &Model, motions: &[Motion]) -> Result<Terms> {
         let mut definitions = vocabulary(&Scales::of(model, motions));
         let mut model = model.clone();
         definitions
             .iter_mut()
             .for_each(|term| rename(term, &model.laws));
-        model.laws.extend(defined(&definitions));
-        Terms { model, definitions }
+        model.laws.extend(defined(&definitions)?);
+        Ok(Terms { model, definitions })
     }
 
     /// What a diagnosis by these terms says of a law.
@@ -158,13 +161,16 @@ fn rename(term: &mut LawDefinition, laws: &[Effect]) {
 
 /// The effects of these terms.
 ///
-/// # Panics
-/// A term that is no law: the vocabulary's own.
-fn defined(terms: &[LawDefinition]) -> Vec<Effect> {
-    let defined = terms.iter().map(|term| match effect(term) {
-        Ok(effect) => effect,
-        Err(fault) => panic!("{} is no law: {fault:?}", term.name),
-    });
+/// # Errors
+/// More laws than one run of the program keeps.
+fn defined(terms: &[LawDefinition]) -> Result<Vec<Effect>> {
+    let of = |fault| match fault {
+        DefinitionFault::Name(reason) | DefinitionFault::Parameter(_, reason) => reason,
+        DefinitionFault::Expression(misplaced) => misplaced.reason,
+    };
+    let defined = terms
+        .iter()
+        .map(|term| effect(term).map_err(|fault| Error::Usage(Box::new(of(fault)))));
     defined.collect()
 }
 

@@ -30,7 +30,7 @@ fn every_term_is_a_law_with_a_name_and_values_of_its_own() {
 
 fn are_laws(scales: &Scales) {
     let terms = vocabulary(scales);
-    let effects = defined(&terms);
+    let effects = defined(&terms).unwrap();
     for (term, effect) in terms.iter().zip(&effects) {
         assert_eq!(effect.info().id, term.name);
         let sizes = effect
