@@ -1,18 +1,16 @@
-//! A discovery as text and JSON: the law, what it leaves, and what else would do.
+//! A discovery as text, and its law with pictures: the law, what it leaves, and what else would do.
 
 use crate::AFTER;
-use crate::json::diagnosis_json;
 use crate::page::Section;
 use crate::plot::{Chart, Curve, Tone};
 use crate::text::{error, list, parameters};
 use crate::words::in_milli;
 use handstand_diagnose::diagnose::words::change;
 use handstand_diagnose::discover::{
-    DiscoveredTerm, Discovery, DiscoveryVerdict, TermPicture, TermVariable,
+    DiscoveredTerm, Discovery, DiscoveryVerdict, OtherLaw, TermPicture, TermVariable,
 };
 use handstand_model::model::JointNames;
 use maud::html;
-use serde_json::{Value, json};
 
 /// Laws shown beside the one found.
 const SHOWN: usize = 5;
@@ -40,19 +38,6 @@ pub fn discovery_text(discovery: &Discovery, names: &JointNames) -> String {
     ];
     let sections: Vec<String> = sections.into_iter().flatten().collect();
     names.in_text(&sections.join("\n\n")) + "\n"
-}
-
-/// The discovery as JSON: `verdict`, `terms`, `others`, and the `diagnosis` it rests on.
-pub fn discovery_json(discovery: &Discovery) -> Value {
-    let others = discovery.others.iter();
-    let others = others.map(|(terms, error_rad)| json!({ "terms": terms, "error_rad": error_rad }));
-    json!({
-        "verdict": discovery.verdict,
-        "terms": discovery.terms,
-        "others": others.collect::<Vec<_>>(),
-        "pictures": discovery.pictures,
-        "diagnosis": diagnosis_json(&discovery.diagnosis),
-    })
 }
 
 /// The law with its pictures, for the page of a report.
@@ -148,10 +133,10 @@ fn line(term: &DiscoveredTerm, names: &JointNames) -> String {
 
 fn others(discovery: &Discovery, names: &JointNames) -> Vec<String> {
     let quantity = discovery.diagnosis.error.quantity;
-    let other = |(terms, error_rad): &(Vec<DiscoveredTerm>, f64)| {
-        let terms = terms.iter().map(|term| line(term, names));
+    let other = |other: &OtherLaw| {
+        let terms = other.terms.iter().map(|term| line(term, names));
         let terms = terms.collect::<Vec<_>>().join(" and ");
-        format!("{}: {terms}", in_milli(*error_rad, quantity))
+        format!("{}: {terms}", in_milli(other.error_rad, quantity))
     };
     let mut lines: Vec<String> = discovery.others.iter().take(SHOWN).map(other).collect();
     if discovery.others.len() > SHOWN {

@@ -5,6 +5,7 @@ use crate::diagnose::Diagnosis;
 use crate::study::Verification;
 use crate::synth::Design;
 use crate::synth::export::{self, Provenance};
+use handstand_diagnose::discover::Discovery;
 use serde_json::{Map, Value};
 
 /// The whole report, its diagnosis as [`diagnosis_json`] writes it. Values that are no number
@@ -22,10 +23,22 @@ pub fn json(report: &Report) -> Value {
 /// `null`.
 pub fn diagnosis_json(diagnosis: &Diagnosis) -> Value {
     let mut value = plain(diagnosis);
-    key_effects(&mut value);
+    key_parameters(&mut value, "effects");
     for alternative in value["alternatives"].as_array_mut().into_iter().flatten() {
-        key_effects(alternative);
+        key_parameters(alternative, "effects");
     }
+    value
+}
+
+/// A discovery: its fields as they are, the `parameters` of terms keyed as those of a diagnosis's
+/// effects, and the `diagnosis` it rests on.
+pub fn discovery_json(discovery: &Discovery) -> Value {
+    let mut value = plain(discovery);
+    key_parameters(&mut value, "terms");
+    for other in value["others"].as_array_mut().into_iter().flatten() {
+        key_parameters(other, "terms");
+    }
+    value["diagnosis"] = diagnosis_json(&discovery.diagnosis);
     value
 }
 
@@ -40,8 +53,9 @@ fn plain(value: &impl serde::Serialize) -> Value {
     serde_json::to_value(value).expect("plain values with text keys are always JSON")
 }
 
-fn key_effects(holder: &mut Value) {
-    for effect in holder["effects"].as_array_mut().into_iter().flatten() {
+/// Keys the parameters of what stands in a list.
+fn key_parameters(holder: &mut Value, list: &str) {
+    for effect in holder[list].as_array_mut().into_iter().flatten() {
         effect["parameters"] = keyed(effect["parameters"].take());
     }
 }

@@ -35,10 +35,10 @@ mod waterfall;
 mod words;
 
 pub use diagnosis_file::DiagnosisFile;
-pub use discovery::{discovery_json, discovery_text, law_section, term_chart, verdict_sentence};
+pub use discovery::{discovery_text, law_section, term_chart, verdict_sentence};
 pub use file_names::{file_name, file_names};
 pub use gains_page::{GainsReport, gains_page};
-pub use json::{diagnosis_json, gains_json, json};
+pub use json::{diagnosis_json, discovery_json, gains_json, json};
 pub use log_check::{log_check_json, log_check_text};
 pub use margins::{
     input_margins_text, is_low, margins_json, margins_text, place_margins_json, with_margins,

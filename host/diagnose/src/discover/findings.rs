@@ -53,6 +53,15 @@ pub struct DiscoveredTerm {
     pub definition: Option<LawDefinition>,
 }
 
+/// Another law that leaves as little.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OtherLaw {
+    /// Its terms.
+    pub terms: Vec<DiscoveredTerm>,
+    /// What it leaves, rad.
+    pub error_rad: f64,
+}
+
 /// Everything that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Discovery {
@@ -60,8 +69,8 @@ pub struct Discovery {
     pub verdict: DiscoveryVerdict,
     /// The terms, whose sum is the torque that the model lacks.
     pub terms: Vec<DiscoveredTerm>,
-    /// Other laws that leave as little, each by its terms with values, and what it leaves, rad.
-    pub others: Vec<(Vec<DiscoveredTerm>, f64)>,
+    /// Other laws that leave as little.
+    pub others: Vec<OtherLaw>,
     /// Terms beside what the motions say, of which a picture can be drawn.
     pub pictures: Vec<TermPicture>,
     /// The diagnosis by these terms: errors, intervals, motions, warnings.
@@ -80,7 +89,10 @@ impl Discovery {
             verdict: verdict(&diagnosis),
             terms: terms(&diagnosis.effects),
             others: others
-                .map(|other| (terms(&other.effects), other.error_rad))
+                .map(|other| OtherLaw {
+                    terms: terms(&other.effects),
+                    error_rad: other.error_rad,
+                })
                 .collect(),
             pictures: Vec::new(),
             diagnosis,

@@ -12,7 +12,7 @@ mod picture;
 mod scales;
 mod vocabulary;
 
-pub use findings::{DiscoveredTerm, Discovery, DiscoveryVerdict};
+pub use findings::{DiscoveredTerm, Discovery, DiscoveryVerdict, OtherLaw};
 pub use picture::{TermPicture, TermVariable};
 
 use crate::diagnose::conventions::ModelFile;
