@@ -7,7 +7,6 @@ use crate::space::{CRANE, accelerations, mjcf, model, refused, run, urdf};
 use handstand::Model;
 use handstand::model::export::{NotCarried, robot_file};
 use handstand::model::{Drive, Motor};
-use std::path::Path;
 
 const TREES: u64 = 100;
 const STATES: usize = 3;
