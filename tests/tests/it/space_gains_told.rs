@@ -124,7 +124,7 @@ fn what_is_for_planar_chains_alone_says_so() {
         &["study", "monte-carlo", "study.toml", "-o", "runs"],
         &["study", "sweep", "delay", "--study", "study.toml"],
         &["virtual", "--pty", "--robot", "crane.toml"],
-        &["record", "--port", "sim:robot=crane.toml", "-o", "a.csv"],
+        &["record", "a.csv", "--port", "sim:robot=crane.toml"],
     ] {
         let (code, said) = refused(at, arguments);
         assert_eq!(code, 3, "{arguments:?}: {said}");
