@@ -6,8 +6,12 @@ use handstand_xtask::root;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+fn file(name: &str) -> PathBuf {
+    root().join("docs/measured").join(name).with_extension("md")
+}
+
 fn page(name: &str) -> String {
-    let file = root().join("docs/measured").join(name).with_extension("md");
+    let file = file(name);
     std::fs::read_to_string(&file).unwrap_or_else(|why| panic!("{}: {why}", file.display()))
 }
 
@@ -46,6 +50,8 @@ fn every_page_has_a_row_or_says_why_not() {
                 let words = why.split_whitespace().count();
                 assert!(words >= 5, "{}: `{why}` is no reason", page.name);
             }
+            // A page that is missing was not measured with this version.
+            _ if !file(page.name).exists() => {}
             Sample::Seconds(row) | Sample::Longer(_, row) => {
                 let (name, begins) = (page.name, row.begins);
                 assert!(

@@ -17,7 +17,8 @@ pub struct Args {
     #[arg(long)]
     list: bool,
     /// Renew nothing: measure one row of each page again, of these alone if any are named
-    #[arg(long, value_name = "PAGES", num_args = 0.., value_delimiter = ',', conflicts_with = "list")]
+    #[arg(long, value_name = "PAGES", num_args = 0.., value_delimiter = ',')]
+    #[arg(conflicts_with = "list")]
     #[arg(value_parser = PossibleValuesParser::new(names()))]
     rows: Option<Vec<String>>,
 }
@@ -66,6 +67,7 @@ fn rows_hold<'a>(pages: impl Iterator<Item = &'a MeasuredPage>) -> bool {
         let begun = Instant::now();
         let said = match &page.sample {
             Sample::Nothing(why) => Ok(Answer::LeftOut(why)),
+            _ if !file(page).exists() => Ok(Answer::LeftOut("there is no page yet")),
             Sample::Seconds(row) | Sample::Longer(_, row) => {
                 text(page).and_then(|text| row.measured_again(&text, &programs))
             }

@@ -1,4 +1,5 @@
-//! The pages of `docs/measured`: which renew in minutes, and one row of each that is measured again.
+//! The pages of `docs/measured`: which renew in minutes, and one row of each that is measured
+//! again.
 
 mod sample_row;
 
@@ -113,12 +114,24 @@ pub const PAGES: &[MeasuredPage] = &[
     page(
         "hidden-approximate-mujoco",
         Cost::Dear("hours; MuJoCo"),
-        Sample::Nothing("there is no page of it yet"),
+        Sample::Longer(
+            "a minute, after 60 MB of packages",
+            row(
+                "hidden --truth mujoco --families approximate --seeds 1 --effects coulomb",
+                "coulomb approximate",
+            ),
+        ),
     ),
     page(
         "hidden-space",
         Cost::Dear("half an hour; MuJoCo"),
-        Sample::Nothing("there is no page of it yet"),
+        Sample::Longer(
+            "a minute or two, after 60 MB of packages",
+            row(
+                "hidden --truth mujoco --families space --seeds 1 --effects coulomb",
+                "coulomb space",
+            ),
+        ),
     ),
     page(
         "hidden-chain",
