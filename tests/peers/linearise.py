@@ -13,40 +13,17 @@ Pinocchio's slopes are exact (computeABADerivatives), MuJoCo's are central diffe
 (mjd_transitionFD).
 """
 
-import json
-import sys
-
 import numpy as np
 
-try:
-    import mujoco
-except ImportError:
-    mujoco = None
-try:
-    import pinocchio
-except ImportError:
-    pinocchio = None
+from robots import answer_cases, mujoco, pinocchio
 
 STEP_S = 1e-3
 DIFFERENCE = 1e-6
 
 
-def by_pinocchio(case):
-    if pinocchio is None:
-        return None
-    model = pinocchio.buildModelFromUrdf(case["file"])
-    locked = [i for i, name in enumerate(model.names) if i > 0 and name not in case["joints"]]
-    if locked:
-        model = pinocchio.buildReducedModel(model, locked, pinocchio.neutral(model))
-    data = model.createData()
-    joints = [model.joints[model.getJointId(name)] for name in case["joints"]]
-    q = pinocchio.neutral(model)
-    for joint, angle in zip(joints, case["q"]):
-        if joint.nq == 2:
-            q[joint.idx_q : joint.idx_q + 2] = np.cos(angle), np.sin(angle)
-        else:
-            q[joint.idx_q] = angle
-    at = [joint.idx_v for joint in joints]
+def by_pinocchio(case, robot):
+    model, data, at = robot.model, robot.data, robot.at
+    q = robot.pose(case["q"])
     torque = pinocchio.computeGeneralizedGravity(model, data, q).copy()
     rest = pinocchio.aba(model, data, q, np.zeros(model.nv), torque).copy()
     per_q, per_dq, per_u = (
@@ -59,20 +36,15 @@ def by_pinocchio(case):
     return dict(zip(("q", "dq", "u"), slopes), rest=rest[at].tolist())
 
 
-def by_mujoco(case):
-    if mujoco is None:
-        return None
-    model = mujoco.MjModel.from_xml_path(case["file"])
+def by_mujoco(case, robot):
+    model, data, dof = robot.model, robot.data, robot.dof
     model.opt.timestep = STEP_S
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
-    data = mujoco.MjData(model)
-    ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in case["joints"]]
-    dof = [model.jnt_dofadr[i] for i in ids]
-    data.qpos[[model.jnt_qposadr[i] for i in ids]] = case["q"]
+    data.qpos[robot.qpos] = case["q"]
     actuator = {model.actuator_trnid[a, 0]: a for a in range(model.nu)}
-    driven = [actuator.get(i) for i in ids]
+    driven = [actuator.get(i) for i in robot.ids]
     for own, value in zip(driven, case["ctrl"]):
         if own is not None:
             data.ctrl[own] = value
@@ -101,12 +73,5 @@ def by_mujoco(case):
     }
 
 
-def main():
-    with open(sys.argv[1], encoding="utf-8") as file:
-        cases = json.load(file)
-    of = {".urdf": by_pinocchio, ".xml": by_mujoco}
-    json.dump([of[case["file"][case["file"].rindex("."):]](case) for case in cases], sys.stdout)
-
-
 if __name__ == "__main__":
-    main()
+    answer_cases(by_pinocchio, by_mujoco)

@@ -36,6 +36,7 @@ mod tap;
 #[cfg(feature = "virtual-cm5")]
 pub mod virtual_cm5;
 
+#[cfg(feature = "ros")]
 use handstand_logs as log;
 use handstand_model::error;
 #[cfg(feature = "virtual-cm5")]

@@ -101,13 +101,22 @@ fn words(report: &GainsReport<'_>) -> Section {
 
 /// Angles and commands after a lean and under a lasting torque.
 fn responses(design: &Design, initial: &LoopResponse, step: &LoopResponse) -> Section {
-    let lean_deg = LEAN_RAD.to_degrees();
+    let (from, under) = match Shown::of(design, 0) {
+        Shown::Deg => (
+            format!("a lean of {:.0} deg", LEAN_RAD.to_degrees()),
+            format!("torque of {STEP_NM} N m"),
+        ),
+        Shown::Mm => (
+            format!("a departure of {:.1} mm", 1e3 * LEAN_RAD),
+            format!("force of {STEP_NM} N"),
+        ),
+    };
     let body = html! {
-        h3 { (format!("From a lean of {lean_deg:.0} deg of the first joint")) }
-        (angles(design, initial))
+        h3 { (format!("From {from} of the first joint")) }
+        (departures(design, initial))
         (commands(design, initial))
-        h3 { (format!("Under a lasting torque of {STEP_NM} N m on the first joint")) }
-        (angles(design, step))
+        h3 { (format!("Under a lasting {under} on the first joint")) }
+        (departures(design, step))
         (commands(design, step))
     };
     Section {
@@ -119,19 +128,60 @@ fn responses(design: &Design, initial: &LoopResponse, step: &LoopResponse) -> Se
     }
 }
 
-fn angles(design: &Design, response: &LoopResponse) -> Markup {
-    let curves = response.angle_rad.iter().enumerate().map(|(joint, angle)| {
-        let degrees = angle.iter().map(|angle| angle.to_degrees());
-        let points = response.time_s.iter().copied().zip(degrees);
-        let name = design.states[joint].name.clone();
-        Curve::line(name, TONES[joint % TONES.len()], points.collect())
-    });
-    drawn(&Chart::new(
-        "Departure of each joint",
-        "time, s",
-        "angle, deg",
-        curves.collect(),
-    ))
+/// The unit in which a joint's departure is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shown {
+    Deg,
+    Mm,
+}
+
+impl Shown {
+    /// That of a joint, counted from 0: mm of one that slides. Of a rig of one joint the second
+    /// place is that of its speed, and no start departs along it.
+    fn of(design: &Design, joint: usize) -> Shown {
+        match design.states[joint].unit {
+            "m" => Shown::Mm,
+            _ => Shown::Deg,
+        }
+    }
+
+    /// A coordinate in rad or m in this unit.
+    fn value(self, coordinate: f64) -> f64 {
+        match self {
+            Shown::Deg => coordinate.to_degrees(),
+            Shown::Mm => 1e3 * coordinate,
+        }
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Shown::Deg => "deg",
+            Shown::Mm => "mm",
+        }
+    }
+}
+
+/// A chart of the joints that turn, and one of those that slide.
+fn departures(design: &Design, response: &LoopResponse) -> Markup {
+    let curves = |unit: Shown| -> Vec<Curve> {
+        let joints = response.angle_rad.iter().enumerate();
+        let own = joints.filter(|(joint, _)| Shown::of(design, *joint) == unit);
+        own.map(|(joint, coordinates)| {
+            let values = coordinates.iter().map(|coordinate| unit.value(*coordinate));
+            let points = response.time_s.iter().copied().zip(values);
+            let name = design.states[joint].name.clone();
+            Curve::line(name, TONES[joint % TONES.len()], points.collect())
+        })
+        .collect()
+    };
+    let chart = |title: &str, axis: &str, unit: Shown| {
+        let curves = curves(unit);
+        (!curves.is_empty()).then(|| drawn(&Chart::new(title, "time, s", axis, curves)))
+    };
+    html! {
+        @if let Some(chart) = chart("Departure of each joint", "angle, deg", Shown::Deg) { (chart) }
+        @if let Some(chart) = chart("Departure of each slide", "path, mm", Shown::Mm) { (chart) }
+    }
 }
 
 fn commands(design: &Design, response: &LoopResponse) -> Markup {
@@ -225,21 +275,26 @@ fn poles(design: &Design) -> Section {
 
 /// Starts that come back and starts that do not.
 fn region(design: &Design, map: &[MappedStart]) -> Section {
-    let degrees = |stabilised: bool| {
+    let [first, second] = [0, 1].map(|joint| Shown::of(design, joint));
+    let starts = |stabilised: bool| {
         let own = map
             .iter()
             .filter(move |start| start.stabilised == stabilised);
-        own.map(|start| (start.first_rad.to_degrees(), start.second_rad.to_degrees()))
+        own.map(|start| (first.value(start.first_rad), second.value(start.second_rad)))
             .collect()
     };
     let curves = vec![
-        Curve::dots("does not come back", Tone::Orange, degrees(false)),
-        Curve::dots("comes back", Tone::Blue, degrees(true)),
+        Curve::dots("does not come back", Tone::Orange, starts(false)),
+        Curve::dots("comes back", Tone::Blue, starts(true)),
     ];
+    let axis = |joint: usize, unit: Shown| {
+        let unit = unit.unit();
+        format!("joint {}, {unit}", design.names.label(joint))
+    };
     let chart = Chart::new(
         "Starts in the plane of the first two joints",
-        &format!("joint {}, deg", design.names.label(0)),
-        &format!("joint {}, deg", design.names.label(1)),
+        &axis(0, first),
+        &axis(1, second),
         curves,
     );
     Section {

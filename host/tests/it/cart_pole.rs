@@ -136,6 +136,27 @@ fn bench() -> Bench {
     bench
 }
 
+/// A cart's path is in mm, the pole's angle in degrees, in the responses and on the map of starts.
+#[test]
+fn a_page_of_gains_shows_slides_in_mm() {
+    let bench = bench();
+    let ran = bench.run("gains cart.toml --report page.html");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let page = bench.get("page.html");
+    for said in [
+        "From a departure of 17.5 mm of the first joint",
+        "Under a lasting force of 0.001 N on the first joint",
+        "Departure of each slide",
+        "path, mm",
+        "angle, deg",
+        "joint 1, mm",
+        "joint 2, deg",
+    ] {
+        assert!(page.contains(said), "{said}");
+    }
+    assert!(!page.contains("joint 1, deg"));
+}
+
 #[test]
 fn friction_of_the_rail_is_found_and_mended() {
     let bench = bench();

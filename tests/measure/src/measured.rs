@@ -1,8 +1,9 @@
 //! What a command measured: tables and lines, for the terminal and for `docs/measured/`.
 
 use comfy_table::{Cell, Row, Table};
+use handstand_xtask::root;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Tables and the lines between them, in order.
@@ -139,6 +140,8 @@ impl Provenance {
     pub fn here() -> Self {
         let words = std::env::args().skip(1).filter(|word| word != "--write");
         let words = words.map(|word| {
+            // Only what is written has to be within the project, and that was asked before.
+            let word = in_project(&word, root()).unwrap_or(word);
             if word.contains(char::is_whitespace) {
                 format!("\"{word}\"")
             } else {
@@ -151,6 +154,30 @@ impl Provenance {
             version: version().to_string(),
             date: date(since.map_or(0, |since| since.as_secs() / 86_400)),
         }
+    }
+}
+
+/// A word of a command as a page may show it: a path from the folder `root` of the project on.
+///
+/// # Errors
+/// A path that leads out of the project: nobody else has it.
+pub fn in_project(word: &str, root: &Path) -> Result<String, String> {
+    let (option, value) = match word.split_once('=') {
+        Some((option, value)) if option.starts_with("--") => (format!("{option}="), value),
+        _ => (String::new(), word),
+    };
+    let path = Path::new(value);
+    let climbs = path.components().any(|part| part == Component::ParentDir);
+    if !path.is_absolute() && !climbs {
+        return Ok(word.to_string());
+    }
+    match path.strip_prefix(root) {
+        Ok(inner) if !climbs => Ok(format!("{option}{}", inner.display())),
+        _ => Err(format!(
+            "`{value}` is outside of the project, and the page would name it: give a path from the \
+             project's folder on, such as target/{}",
+            path.file_name().unwrap_or_default().to_string_lossy()
+        )),
     }
 }
 
@@ -269,6 +296,32 @@ mod tests {
             refused.contains("firmware.md") && refused.contains(BEGIN),
             "{refused}"
         );
+    }
+
+    #[test]
+    fn a_page_names_no_path_outside_of_the_project() {
+        let root = Path::new("/home/me/handstand");
+        for (word, shown) in [
+            ("target/a.jsonl", "target/a.jsonl"),
+            ("viscous,coulomb", "viscous,coulomb"),
+            ("/home/me/handstand/target/a.jsonl", "target/a.jsonl"),
+            (
+                "--outcomes=/home/me/handstand/a.jsonl",
+                "--outcomes=a.jsonl",
+            ),
+        ] {
+            assert_eq!(in_project(word, root).as_deref(), Ok(shown));
+        }
+        for word in [
+            "/tmp/a.jsonl",
+            "../a.jsonl",
+            "--outcomes=/tmp/a.jsonl",
+            "/home/me/handstand/../a.jsonl",
+            "/home/me/handstand2/a.jsonl",
+        ] {
+            let refused = in_project(word, root).unwrap_err();
+            assert!(refused.contains("such as target/a.jsonl"), "{refused}");
+        }
     }
 
     #[test]

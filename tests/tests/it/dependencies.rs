@@ -168,6 +168,7 @@ fn without_its_features_the_library_pulls_neither_lab_nor_firmware() {
         "axum",
         "parquet",
         "hdf5-reader",
+        "mcap",
     ] {
         assert!(holds(&full, name), "{name} is not there");
         assert!(!holds(&bare, name), "{name} is there");

@@ -266,18 +266,46 @@ pub(crate) fn swung(model: &Model, number: usize) -> String {
     text
 }
 
-/// What a command that succeeds prints on stdout and stderr.
-pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> [String; 2] {
+/// Exit code, stdout and stderr of a command.
+fn ran(folder: &Path, arguments: &[&str]) -> (i32, [String; 2]) {
     let mut command = Command::new(program());
     let output = command
         .current_dir(folder)
         .args(arguments)
         .output()
         .unwrap();
-    let [text, complaints] =
+    let said =
         [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    assert!(output.status.success(), "{arguments:?}: {complaints}");
-    [text, complaints]
+    (output.status.code().unwrap(), said)
+}
+
+/// What a command that succeeds prints on stdout and stderr.
+pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> [String; 2] {
+    let (code, said) = ran(folder, arguments);
+    assert_eq!(code, 0, "{arguments:?}: {}", said[1]);
+    said
+}
+
+/// Exit code and stderr, its words with a blank between.
+pub(crate) fn refused(folder: &Path, arguments: &[&str]) -> (i32, String) {
+    let (code, [_, said]) = ran(folder, arguments);
+    (code, said.split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
+/// Writes a crane's file and imports it into `crane.toml`, its joints driven by torques; what the
+/// import says on stderr.
+pub(crate) fn import_crane(folder: &Path, urdf: &str) -> String {
+    std::fs::write(folder.join("crane.urdf"), urdf).unwrap();
+    let import = [
+        "import",
+        "crane.urdf",
+        "--space",
+        "--driven",
+        "-o",
+        "crane.toml",
+    ];
+    let [_, told] = printed(folder, &import);
+    told
 }
 
 pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (Value, String) {
@@ -293,16 +321,7 @@ pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (Value, String) {
 fn what_a_robot_in_space_lacks_is_added_and_the_error_falls() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    std::fs::write(at.join("crane.urdf"), CRANE).unwrap();
-    let import = [
-        "import",
-        "crane.urdf",
-        "--space",
-        "--driven",
-        "-o",
-        "crane.toml",
-    ];
-    let (_, told) = run(at, &import);
+    let told = import_crane(at, CRANE);
     assert!(told.contains("joints: slew, luff, roll"), "{told}");
     let model = Model::load(&at.join("crane.toml")).unwrap();
     for (number, name) in ["a.csv", "b.csv", "c.csv"].into_iter().enumerate() {

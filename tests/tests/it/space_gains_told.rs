@@ -1,10 +1,7 @@
 //! What `handstand gains` says of a robot in space, and what is refused of one.
 
-use crate::program;
-use crate::space::{CRANE, printed, run};
+use crate::space::{CRANE, import_crane, printed, refused, run};
 use serde_json::{Value, json};
-use std::path::Path;
-use std::process::Command;
 
 /// A folder with the crane and its model, whose joints all take torques; the boom has a range.
 fn crane() -> tempfile::TempDir {
@@ -18,29 +15,8 @@ fn crane() -> tempfile::TempDir {
     );
     let luff = "<joint name=\"luff\" type=\"continuous\">";
     let ranged = ranged.replace(luff, "<joint name=\"luff\" type=\"revolute\">");
-    std::fs::write(at.join("crane.urdf"), ranged).unwrap();
-    let import = [
-        "import",
-        "crane.urdf",
-        "--space",
-        "--driven",
-        "-o",
-        "crane.toml",
-    ];
-    printed(at, &import);
+    import_crane(at, &ranged);
     folder
-}
-
-/// Exit code and stderr.
-fn refused(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let mut command = Command::new(program());
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    (output.status.code().unwrap(), said)
 }
 
 #[test]
@@ -128,7 +104,6 @@ fn poses_that_are_none_are_refused_with_what_to_do() {
         ("luff", "luff", "by name"),
     ] {
         let (code, text) = refused(folder.path(), &["gains", "crane.toml", "--pose", pose]);
-        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(code, 2, "{pose}: {text}");
         assert!(text.contains(said) && text.contains(help), "{pose}: {text}");
     }
@@ -148,9 +123,10 @@ fn what_is_for_planar_chains_alone_says_so() {
         &["delays", "crane.toml"],
         &["study", "monte-carlo", "study.toml", "-o", "runs"],
         &["study", "sweep", "delay", "--study", "study.toml"],
+        &["virtual", "--pty", "--robot", "crane.toml"],
+        &["record", "a.csv", "--port", "sim:robot=crane.toml"],
     ] {
         let (code, said) = refused(at, arguments);
-        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(code, 3, "{arguments:?}: {said}");
         assert!(
             said.contains("is a robot in space, and"),

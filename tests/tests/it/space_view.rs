@@ -1,7 +1,7 @@
 //! The animation of a robot in space: its frames in a browser are those of the equations.
 
 use crate::import::Draws;
-use crate::space::{CRANE, mjcf, model, run, swung, urdf};
+use crate::space::{CRANE, import_crane, mjcf, model, run, swung, urdf};
 use handstand::Model;
 use handstand::report::playback::Scene;
 use handstand_browser::Browser;
@@ -29,17 +29,8 @@ fn crane() -> (TempDir, Model) {
                 </visual>";
     let text = CRANE.replace("<link name=\"boom\">", seen);
     let text = text.replace("<link name=\"head\">", lost);
-    std::fs::write(at.join("crane.urdf"), text).unwrap();
     std::fs::write(at.join("boom.stl"), wedge()).unwrap();
-    let import = [
-        "import",
-        "crane.urdf",
-        "--space",
-        "--driven",
-        "-o",
-        "crane.toml",
-    ];
-    run(at, &import);
+    import_crane(at, &text);
     let model = Model::load(&at.join("crane.toml")).unwrap();
     let text = std::fs::read_to_string(at.join("crane.toml")).unwrap()
         + "\n[[effect]]\nkind = \"viscous\"\njoint = \"luff\"\ncoefficient_nm_s_rad = 0.06\n";

@@ -178,12 +178,7 @@ pub(super) async fn model(
 ) -> Answer {
     act(lab, number, "data", move |session, saved| {
         shown.check(saved)?;
-        if saved.steps.is_empty() {
-            session.begin_model("as given", &text.toml)?
-        } else {
-            session.push_step(SavedStep::by_hand("edited by hand", text.toml))?
-        }
-        Ok(())
+        Ok(session.write_model(&text.toml)?)
     })
     .await
 }

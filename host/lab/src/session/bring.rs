@@ -9,6 +9,7 @@ use crate::first_model::estimate;
 use crate::log::init::{Draft, RobotDraft, RobotRequest};
 use crate::log::{LogRequest, RawLog};
 use crate::model::Model;
+use crate::model::edit::set_robot_file;
 use crate::model::import::{Imported, Remark, SpacePlan, import_whole};
 use std::path::Path;
 
@@ -123,18 +124,16 @@ impl LabSession {
                 Some(_) => self.keep_robot_from(name, text)?,
                 None => self.keep_robot(&file, text)?,
             };
-            imported = match self.with_columns(name, text, &space) {
+            imported.toml = set_robot_file(&imported.toml, name, &space.robot)?;
+            match self.with_columns(name, text, &space) {
                 Some(Ok(draft)) => {
                     let guesses = draft.guesses.iter();
                     note.extend(guesses.map(|own| format!("{}: {}", own.what, own.guess)));
-                    draft.imported
+                    imported = draft.imported;
                 }
-                Some(Err(why)) => {
-                    note.push(format!("columns are yet to be picked: {why}"));
-                    import_whole(text, name, false, &space)?
-                }
-                None => import_whole(text, name, false, &space)?,
-            };
+                Some(Err(why)) => note.push(format!("columns are yet to be picked: {why}")),
+                None => {}
+            }
         }
         note.extend(imported.left_out.iter().map(not_carried));
         Ok(SavedStep {
@@ -176,6 +175,18 @@ impl LabSession {
     /// As [`LabSession::model_step`].
     pub fn bring_model(&self, name: &Path, text: &str) -> Result<()> {
         self.push_step(self.model_step(name, text, None)?)
+    }
+
+    /// Takes a model's text that somebody pasted or edited: as the first step, or as the next one.
+    ///
+    /// # Errors
+    /// A text that is no model, a robot's file that is not in the session.
+    pub fn write_model(&self, text: &str) -> Result<()> {
+        let toml = self.with_robot(Path::new("the text"), text, None)?;
+        if self.saved().steps.is_empty() {
+            return self.begin_model("as given", &toml);
+        }
+        self.push_step(SavedStep::by_hand("edited by hand", toml))
     }
 }
 

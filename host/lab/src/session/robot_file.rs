@@ -101,7 +101,7 @@ impl LabSession {
                             "{}: its robot {robot} is not in this session",
                             name.display()
                         ),
-                        format!("bring {kept} first, or both together"),
+                        format!("bring the robot's file {kept} first, or both together"),
                     ));
                 }
                 kept

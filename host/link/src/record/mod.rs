@@ -9,6 +9,7 @@ mod follow;
 mod group_adapter;
 mod group_sample;
 mod latency;
+#[cfg(feature = "ros")]
 mod mcap;
 mod motion;
 mod one_sample;

@@ -1,8 +1,10 @@
 //! Reading recordings back, whole or torn.
 
+use super::csv;
+#[cfg(feature = "ros")]
+use super::mcap;
 use super::recorder::FileFormat;
 use super::sample::RobotSample;
-use super::{csv, mcap};
 use crate::error::{Error, Result};
 use std::path::Path;
 
@@ -47,6 +49,7 @@ pub fn read(path: &Path) -> Result<Recording> {
     }
     let (ids, samples, torn) = match FileFormat::of(path)? {
         FileFormat::Csv => csv::read(&std::fs::read_to_string(path).map_err(refused)?, path)?,
+        #[cfg(feature = "ros")]
         FileFormat::Mcap => mcap::read(&std::fs::read(path).map_err(refused)?, path)?,
     };
     Ok(Recording { ids, samples, torn })

@@ -1,6 +1,7 @@
 //! Writing samples as they come: a crash costs at most the last second.
 
 use super::csv::CsvWriter;
+#[cfg(feature = "ros")]
 use super::mcap::McapWriter;
 use super::sample::RobotSample;
 use crate::error::{Error, Result};
@@ -14,6 +15,7 @@ pub enum FileFormat {
     /// Text, a row per sample.
     Csv,
     /// MCAP with ROS 2 joint states.
+    #[cfg(feature = "ros")]
     Mcap,
 }
 
@@ -21,11 +23,17 @@ impl FileFormat {
     /// Of this file.
     ///
     /// # Errors
-    /// Another ending.
+    /// Another ending, or one of a format that this build leaves out.
     pub fn of(path: &Path) -> Result<FileFormat> {
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("csv") => Ok(FileFormat::Csv),
+            #[cfg(feature = "ros")]
             Some("mcap") => Ok(FileFormat::Mcap),
+            #[cfg(not(feature = "ros"))]
+            Some("mcap") => Err(Error::usage(
+                format!("{}: this build leaves out MCAP", path.display()),
+                "end the name in .csv, or build with the cargo feature `ros`",
+            )),
             _ => Err(Error::usage(
                 format!("{}: unknown format", path.display()),
                 "end the name in .csv or .mcap",
@@ -82,6 +90,7 @@ impl RobotRecorder {
         let own = file.try_clone().map_err(refused)?;
         let writer: Box<dyn Writer> = match format {
             FileFormat::Csv => Box::new(CsvWriter::new(own, ids)),
+            #[cfg(feature = "ros")]
             FileFormat::Mcap => Box::new(McapWriter::new(own, ids).map_err(refused)?),
         };
         Ok(RobotRecorder {

@@ -120,6 +120,7 @@ pub struct RobotSample {
 
 impl RobotSample {
     /// Current of each servo, A; empty where none measures it.
+    #[cfg(feature = "ros")]
     pub(super) fn currents(&self) -> Vec<Option<f64>> {
         let joints = self.joints.iter().filter(|_| self.has_current);
         joints.map(|joint| joint.current_a).collect()

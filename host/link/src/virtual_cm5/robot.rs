@@ -52,6 +52,7 @@ pub fn set_up_model(spec: &BusSpec, model: Model) -> Result<Bus> {
 }
 
 fn robot(spec: &RobotSpec, model: Model, ids: &[u8]) -> Result<Robot> {
+    model.planar_only("what hangs on simulated servos moves in a plane")?;
     model.hinges_only("simulated servos turn")?;
     let driven: Vec<usize> = (0..model.joints.len())
         .filter(|at| model.joints[*at].drive.is_driven())

@@ -91,12 +91,17 @@ fn a_robots_file_that_is_dropped_takes_the_columns_of_the_log() {
     };
     let model = "[rig]\nname = \"so\"\nrobot = \"../elsewhere/robot.urdf\"\n";
     let refused = drop("so.toml", model);
-    assert_eq!(refused.status, 422);
-    assert!(
-        refused.text().contains("bring robot.urdf first"),
-        "{}",
-        refused.text()
-    );
+    let pasted = server.post("/s/1/model", &json!({ "toml": model }));
+    for refused in [refused, pasted] {
+        assert_eq!(refused.status, 422);
+        assert!(
+            refused
+                .text()
+                .contains("bring the robot's file robot.urdf first"),
+            "{}",
+            refused.text()
+        );
+    }
     assert_eq!(drop("a.csv", &table()).status, 200);
     let taken = drop("robot.urdf", ROBOT);
     assert_eq!(taken.status, 200, "{}", taken.text());
@@ -116,4 +121,7 @@ fn a_robots_file_that_is_dropped_takes_the_columns_of_the_log() {
     );
     assert_eq!(taken.status, 200, "{}", taken.text());
     assert_eq!(steps(&server, 1)[1]["toml"], toml);
+    let pasted = json!({ "toml": toml.replace("robot.urdf", "a/robot.urdf") });
+    assert_eq!(server.post("/s/1/model", &pasted).status, 200);
+    assert_eq!(steps(&server, 1)[2]["toml"], toml);
 }

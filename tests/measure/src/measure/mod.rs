@@ -25,6 +25,8 @@ mod virtual_cm5;
 mod within;
 
 use clap::{Parser, Subcommand};
+use handstand_measure::measured::in_project;
+use handstand_xtask::root;
 use std::process::ExitCode;
 
 /// The project's chores that measure.
@@ -80,6 +82,10 @@ enum Chore {
 impl Chores {
     /// Does the chore; fails if any of it failed.
     pub fn run(&self) -> ExitCode {
+        if let Err(why) = writable() {
+            eprintln!("{why}");
+            return ExitCode::FAILURE;
+        }
         let well = match &self.chore {
             Chore::Peers(args) => peers::run(args),
             Chore::Hidden(args) => hidden::run(args),
@@ -108,4 +114,15 @@ impl Chores {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Refuses, before anything is measured, to write a page whose command would name a path outside of
+/// the project.
+fn writable() -> Result<(), String> {
+    let mut words = std::env::args().skip(1);
+    if !words.any(|word| word == "--write") {
+        return Ok(());
+    }
+    let mut words = std::env::args().skip(1);
+    words.try_for_each(|word| in_project(&word, root()).map(drop))
 }

@@ -116,15 +116,27 @@ fn is_possible(value: f64) -> bool {
     value > 0.0 && value <= POSITIVE.1
 }
 
-/// Replaces a drive whose figures no model has by a torque, and says so.
+/// Replaces a drive whose figures no model has by a torque, and says so; says of a speed without
+/// load that no model has that it is left out.
 fn possible_drive(link: &mut PlanarLink) {
     let figures = drive_figures(&link.joint.drive);
     let of_drive = [figures.gain, figures.stall];
-    if of_drive.into_iter().flatten().all(is_possible) {
-        return;
-    }
     let (by, line) = link.joint.limited_by;
     let most = POSITIVE.1;
+    if of_drive.into_iter().flatten().all(is_possible) {
+        if let Some(speed) = figures.beyond_all_speeds {
+            let (unit, effort) = match link.slide {
+                None => ("rad/s", "torque"),
+                Some(_) => ("m/s", "force"),
+            };
+            let why = format!(
+                "{speed:.4e} {unit} is beyond the {most} that a drive here has: its {effort} does \
+                 not fall with its speed"
+            );
+            link.joint.leave("speed without load", line, why);
+        }
+        return;
+    }
     let limit_nm = figures.stall.filter(|_| !by.is_empty());
     let why = format!(
         "its stiffness or limit makes a gain or a stall torque beyond the {most} that a drive here \
@@ -140,6 +152,8 @@ struct DriveFigures {
     gain: Option<f64>,
     stall: Option<f64>,
     speed: Option<f64>,
+    /// A speed that no model has, in place of `speed`.
+    beyond_all_speeds: Option<f64>,
 }
 
 fn drive_figures(drive: &TreeDrive) -> DriveFigures {
@@ -165,12 +179,14 @@ fn drive_figures(drive: &TreeDrive) -> DriveFigures {
         } => (Some(gain_nm_s / limit_nm), Some(limit_nm), None),
     };
     // Torque that falls to nothing beyond all speeds hardly falls.
-    let speed = speed.filter(|speed| *speed <= POSITIVE.1);
+    let is_beyond = |speed: &f64| *speed > POSITIVE.1;
     DriveFigures {
         name: drive.name(),
         gain,
         stall,
-        speed,
+        speed: speed.filter(|speed| !is_beyond(speed)),
+        // Without any damping there is no such speed.
+        beyond_all_speeds: speed.filter(|speed| speed.is_finite() && is_beyond(speed)),
     }
 }
 

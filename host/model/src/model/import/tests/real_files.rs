@@ -132,6 +132,27 @@ fn limits_of_torque_act_as_the_file_says() {
 }
 
 #[test]
+fn a_speed_without_load_that_no_model_has_is_told() {
+    let servo = |kv: &str| {
+        let tail = format!(
+            "\n<actuator><position joint='j2' kp='8' kv='{kv}' forcerange='-2 2'/></actuator>"
+        );
+        imported(&mjcf("", "", "", &tail), &[])
+    };
+    let speed = |model: &Model| model.joints[1].drive.motor().unwrap().no_load_speed_rad_s;
+    let (found, model) = servo("0.001");
+    assert_eq!(speed(&model), f64::INFINITY);
+    let (line, why) = told(&found, "speed without load").unwrap();
+    assert!(line.is_some() && why.contains("2.0000e3 rad/s"), "{why}");
+    // A speed that a model has is kept, and without damping there is none.
+    for (kv, kept) in [("0.5", 4.0), ("0", f64::INFINITY)] {
+        let (found, model) = servo(kv);
+        assert_eq!(speed(&model), kept);
+        assert_eq!(told(&found, "speed without load"), None, "{kv}");
+    }
+}
+
+#[test]
 fn what_no_model_has_is_left_out_with_its_place() {
     let joint = "damping='240' frictionloss='12' armature='3' stiffness='180'";
     let motor = "<actuator><motor joint='j2' gear='330' ctrlrange='-1 1'/></actuator>";
