@@ -131,7 +131,7 @@ const fn friction(
 
 /// All laws, at the size of the arm: gravity asks for some 0.25 N m, and motions reach some 6 rad/s
 /// and 1.5 rad.
-static LAWS: [Kind; 32] = [
+static LAWS: [Kind; 40] = [
     torque(
         "cubic_drag",
         "-c * w^3",
@@ -333,5 +333,53 @@ static LAWS: [Kind; 32] = [
                 0.0
             }
         },
+    ),
+    torque(
+        "exponential_spring",
+        "-c * (exp(q / k) - 1)",
+        &[("c", 0.01, 0.03), ("k", 0.5, 0.9)],
+        |p, q, _, _| -p[0] * ((q / p[1]).exp() - 1.0),
+    ),
+    torque(
+        "double_well",
+        "c * q - d * q^3",
+        &[("c", 0.02, 0.05), ("d", 0.03, 0.08)],
+        |p, q, _, _| p[0] * q - p[1] * q.powi(3),
+    ),
+    torque(
+        "logarithmic_drag",
+        "-c * signum(w) * ln(1 + abs(w) / k)",
+        &[("c", 0.02, 0.05), ("k", 0.3, 1.0)],
+        |p, _, w, _| -p[0] * w.signum() * (1.0 + w.abs() / p[1]).ln(),
+    ),
+    torque(
+        "swaying_drag",
+        "-c * w * (1 + cos(5 * q))",
+        &[("c", 0.01, 0.03)],
+        |p, q, w, _| -p[0] * w * (1.0 + (5.0 * q).cos()),
+    ),
+    torque(
+        "square_of_speed_by_angle",
+        "-c * q * w^2",
+        &[("c", 0.003, 0.01)],
+        |p, q, w, _| -p[0] * q * w * w,
+    ),
+    torque(
+        "saturating_motor",
+        "k * tanh(tau / k) - tau",
+        &[("k", 0.4, 0.8)],
+        |p, _, _, drive| p[0] * (drive / p[0]).tanh() - drive,
+    ),
+    friction(
+        "rational_friction",
+        "c / (1 + (w / k)^2)",
+        &[("c", 0.03, 0.08), ("k", 0.5, 1.5)],
+        |p, _, w, _| p[0] / (1.0 + (w / p[1]).powi(2)),
+    ),
+    friction(
+        "friction_by_load_and_angle",
+        "c * abs(tau) * q^2",
+        &[("c", 0.1, 0.3)],
+        |p, q, _, drive| p[0] * drive.abs() * q * q,
     ),
 ];

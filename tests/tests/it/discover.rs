@@ -48,7 +48,9 @@ fn a_law_becomes_a_model_that_other_commands_take() {
     );
     let error = |model: &str| {
         let compared = handstand(dir, &format!("compare {model} c.csv"), 0);
-        compared["comparisons"][0]["signals"][0]["rms_rad"].as_f64().unwrap()
+        compared["comparisons"][0]["signals"][0]["rms_rad"]
+            .as_f64()
+            .unwrap()
     };
     let (before, after) = (error("arm.toml"), error("better.toml"));
     assert!(after < 0.01 * before, "{before} -> {after}");

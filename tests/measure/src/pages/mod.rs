@@ -88,6 +88,14 @@ pub const PAGES: &[MeasuredPage] = &[
         ),
     ),
     page(
+        "discover",
+        Cost::Dear("half an hour"),
+        Sample::Seconds(row(
+            "discover --seed0 31 --laws cubic_drag --nothing 0",
+            "cubic_drag 31",
+        )),
+    ),
+    page(
         "first-hour",
         Cost::Dear("half an hour"),
         Sample::Seconds(row(
