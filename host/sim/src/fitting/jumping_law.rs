@@ -211,8 +211,8 @@ fn variance(found: &Fit) -> f64 {
 }
 
 /// Whether a value belongs to an effect whose law jumps in this model. The command of a joint that
-/// regulates its angle moves on with the joint, and a simulation takes a jump there as the mean over
-/// what it moves in a step.
+/// regulates its angle moves on with the joint, and a simulation takes a jump there as the mean
+/// over what it moves in a step.
 pub(super) fn jumps(path: &ParameterPath, model: &Model) -> bool {
     let ParameterPath::Effect { id, joint, .. } = path else {
         return false;
