@@ -32,7 +32,8 @@ fn the_mean_over_a_dead_zones_edge_is_that_of_its_law() {
             assert!(off.abs() < 1e-4, "{punch} {duty} {spread}: {off}");
         }
         let jump = zone.command_jump(&[0.1, punch]);
-        near(jump, zone.command(&[0.1, punch], 0.1 + 1e-12));
+        let above = zone.command(&[0.1, punch], 0.1 + 1e-12);
+        assert!((jump - above).abs() < 1e-9, "{punch}: {jump} {above}");
     }
 }
 
