@@ -61,9 +61,35 @@ impl Law for DeadZone {
         if duty.abs() <= *width {
             0.0
         } else {
-            (duty.abs() + punch)
-                .clamp(0.0, duty.abs().max(1.0))
-                .copysign(duty)
+            beyond(*punch, duty.abs()).copysign(duty)
         }
     }
+
+    /// Of each side the share of the duties beyond the zone, at the middle of these: exact, but
+    /// for those across which full range or reversal cuts the law off.
+    fn mean_command(&self, values: &[f64], duty: f64, spread: f64) -> f64 {
+        let [width, punch] = values else { return duty };
+        if spread == 0.0 {
+            return self.command(values, duty);
+        }
+        let side = |duty: f64| {
+            let (low, high) = ((duty - spread).max(*width), duty + spread);
+            if high > low {
+                (high - low) / (2.0 * spread) * beyond(*punch, 0.5 * (low + high))
+            } else {
+                0.0
+            }
+        };
+        side(duty) - side(-duty)
+    }
+
+    fn command_jump(&self, values: &[f64]) -> f64 {
+        let [width, punch] = values else { return 0.0 };
+        beyond(*punch, *width)
+    }
+}
+
+/// The duty applied outside the zone, of one above zero.
+fn beyond(punch: f64, duty: f64) -> f64 {
+    (duty + punch).clamp(0.0, duty.max(1.0))
 }

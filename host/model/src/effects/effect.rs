@@ -55,6 +55,18 @@ pub trait Law: Sync + fmt::Debug {
         duty
     }
 
+    /// Command: the mean of [`Law::command`] over the duties up to `spread` to either side of this
+    /// one, as a step sees it through which the duty moves so far. A law that jumps says it, so
+    /// that where within a step it jumps counts.
+    fn mean_command(&self, values: &[f64], duty: f64, _spread: f64) -> f64 {
+        self.command(values, duty)
+    }
+
+    /// Command: by how much the duty jumps that the drive applies.
+    fn command_jump(&self, _values: &[f64]) -> f64 {
+        0.0
+    }
+
     /// Drive: the torque that arrives at the joint, N m, while the drive is energised.
     fn drive(&self, _values: &[f64], torque_nm: f64, _at: &DriveState) -> f64 {
         torque_nm

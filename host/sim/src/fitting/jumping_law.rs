@@ -11,8 +11,8 @@ use super::jacobian::difference;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::window_start::WindowStart;
-use crate::effects::{SMOOTH_DIFFERENCE, named};
-use crate::model::{Model, ParameterPath};
+use crate::effects::{SMOOTH_DIFFERENCE, Site, named};
+use crate::model::{Drive, Joint, Model, ParameterPath};
 use rayon::prelude::*;
 
 /// Places looked up on either side of a value.
@@ -95,7 +95,7 @@ impl Descent {
     fn lowest(self, found: &Fit, data: &FitProblem) -> Option<(Model, Vec<WindowStart>)> {
         let free = found.free.iter().enumerate();
         let jumping: Vec<usize> = free
-            .filter(|(_, path)| jumps(path))
+            .filter(|(_, path)| jumps(path, &found.model))
             .map(|(i, _)| i)
             .collect();
         if jumping.is_empty() {
@@ -118,7 +118,12 @@ impl Descent {
 /// The fit, or one elsewhere on its stairs, where it suits other motions better: which command a
 /// law swallows is told by the motions that have one near, and these may be the ones held out.
 pub fn choose_by_other_motions(mut found: Fit, data: &FitProblem, others: &FitProblem) -> Fit {
-    let jumping: Vec<ParameterPath> = found.free.iter().filter(|p| jumps(p)).copied().collect();
+    let jumping: Vec<ParameterPath> = found
+        .free
+        .iter()
+        .copied()
+        .filter(|p| jumps(p, &found.model))
+        .collect();
     for path in jumping {
         let predicted = fit_start_states(&found.model, others);
         let places = places_on_stair(&found, data, &path).into_par_iter();
@@ -205,10 +210,22 @@ fn variance(found: &Fit) -> f64 {
     found.residuals.mean_square().max(1.0)
 }
 
-/// Whether a value belongs to an effect whose law jumps.
-pub(super) fn jumps(path: &ParameterPath) -> bool {
-    let ParameterPath::Effect { id, .. } = path else {
+/// Whether a value belongs to an effect whose law jumps in this model. The command of a joint that
+/// regulates its angle moves on with the joint, and a simulation takes a jump there as the mean
+/// over what it moves in a step.
+pub(super) fn jumps(path: &ParameterPath, model: &Model) -> bool {
+    let ParameterPath::Effect { id, joint, .. } = path else {
         return false;
     };
-    named(id).is_some_and(|effect| effect.difference() > SMOOTH_DIFFERENCE)
+    let regulates = |joint: &Joint| matches!(joint.drive, Drive::Position { .. });
+    let is_smoothed = || match joint {
+        Some(joint) => model.joints.get(*joint).is_some_and(regulates),
+        None => (model.joints.iter())
+            .filter(|joint| joint.drive.is_driven())
+            .all(regulates),
+    };
+    named(id).is_some_and(|effect| {
+        let is_command = effect.info().site == Site::Command;
+        effect.difference() > SMOOTH_DIFFERENCE && !(is_command && is_smoothed())
+    })
 }

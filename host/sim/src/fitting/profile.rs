@@ -32,7 +32,7 @@ pub fn profile_intervals(fit: &Fit, data: &FitProblem, intervals: &[Interval]) -
     };
     let steps = fit.normal_equations(0.0);
     let least = fit.residuals.cost();
-    let jumps = fit.free.iter().any(jumping_law::jumps);
+    let jumps = (fit.free.iter()).any(|path| jumping_law::jumps(path, &fit.model));
     intervals
         .par_iter()
         .enumerate()

@@ -44,6 +44,26 @@ impl From<DriveInput> for Signals {
     }
 }
 
+/// What a regulator reads of its own encoder.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct OwnReading {
+    /// The reading, rad.
+    pub angle_rad: f64,
+    /// By how much it moves in half an integration step, rad: a law that jumps at a reading between
+    /// two steps is taken as the mean over it, or it jumps a part of a step too soon or too late.
+    pub moves_rad: f64,
+}
+
+impl From<f64> for OwnReading {
+    /// At an instant.
+    fn from(angle_rad: f64) -> Self {
+        OwnReading {
+            angle_rad,
+            moves_rad: 0.0,
+        }
+    }
+}
+
 impl JointPlan {
     /// Whether the torque follows from the input alone, whatever the joint's angle and speed.
     pub(super) fn torque_is_held(&self) -> bool {
@@ -70,14 +90,14 @@ impl JointPlan {
     pub(super) fn drive_torque_nm(
         &self,
         at: DriveInput,
-        reading_rad: f64,
+        reading: OwnReading,
         speed_rad_s: f64,
         memory: &[MemoryCell],
     ) -> f64 {
         if !at.energised || self.drive == Drive::Passive {
             return 0.0;
         }
-        let duty = self.duty(at, reading_rad, speed_rad_s);
+        let duty = self.duty(at, reading, speed_rad_s);
         let slope = self
             .drive
             .motor()
@@ -99,16 +119,21 @@ impl JointPlan {
     /// Duty that the drive applies, -1 to 1, at a reading of the joint's own encoder and a speed: 0
     /// while it is not energised.
     #[inline]
-    pub(super) fn duty(&self, at: DriveInput, reading_rad: f64, speed_rad_s: f64) -> f64 {
+    pub(super) fn duty(&self, at: DriveInput, reading: OwnReading, speed_rad_s: f64) -> f64 {
         if !at.energised {
             return 0.0;
         }
+        let mut spread = 0.0;
         let duty = match &self.drive {
             Drive::Passive => return 0.0,
             Drive::Torque => at.input / self.full_torque_nm,
             Drive::Duty(_) => at.input,
             Drive::Position { gain_per_rad, .. } => {
-                (gain_per_rad * (at.input - reading_rad)).clamp(-1.0, 1.0)
+                let duty = gain_per_rad * (at.input - reading.angle_rad);
+                if duty.abs() < 1.0 {
+                    spread = gain_per_rad.abs() * reading.moves_rad;
+                }
+                duty.clamp(-1.0, 1.0)
             }
             Drive::Speed {
                 gain_s_per_rad,
@@ -122,8 +147,12 @@ impl JointPlan {
                 (forward + gain_s_per_rad * (at.input - speed_rad_s)).clamp(-1.0, 1.0)
             }
         };
-        self.command
-            .iter()
-            .fold(duty, |duty, e| e.effect.command(e.values(), duty))
+        self.command.iter().fold(duty, |duty, e| {
+            if spread == 0.0 {
+                e.effect.command(e.values(), duty)
+            } else {
+                e.effect.mean_command(e.values(), duty, spread)
+            }
+        })
     }
 }

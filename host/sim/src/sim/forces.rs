@@ -1,5 +1,7 @@
 //! Accelerations of a plant at a state: drives, joint torques and friction on the chain.
 
+mod kicks;
+
 use super::auxiliary::Auxiliary;
 use super::drive::DriveInput;
 use super::memory::EffectMemory;
@@ -30,6 +32,10 @@ pub(super) struct Forces<R: Rows> {
     loads: R::Of<f64>,
     bearing: R::Of<f64>,
     zeros: R::Of<f64>,
+    /// Half of the integration step, s.
+    pub half_step_s: f64,
+    /// By how much the jump of a command changes a regulated joint's acceleration, rad/s^2.
+    kicks: R::Of<f64>,
     /// What effects remember; it stays through a step.
     pub memory: EffectMemory,
     /// Motors behind gears that give, and a base that gives way.
@@ -51,6 +57,8 @@ impl<R: Rows> Forces<R> {
             loads: zeros(),
             bearing: zeros(),
             zeros: zeros(),
+            half_step_s: 0.0,
+            kicks: zeros(),
             memory: EffectMemory::default(),
             auxiliary: Auxiliary::new(plant),
         }
@@ -62,7 +70,7 @@ impl<R: Rows> Forces<R> {
         for (joint, plan) in plant.joints.iter().enumerate() {
             if plan.follows_input {
                 self.drive_torque[joint] =
-                    plan.drive_torque_nm(inputs[joint], 0.0, 0.0, &self.memory.0);
+                    plan.drive_torque_nm(inputs[joint], 0.0.into(), 0.0, &self.memory.0);
             }
         }
     }
@@ -134,10 +142,10 @@ impl<R: Rows> Forces<R> {
             let mut drive = match plan.drive {
                 _ if plan.follows_input => self.drive_torque[joint],
                 Drive::Position { .. } => {
-                    let reading = plant.encoded_rad(joint, at.angle);
+                    let reading = self.own_reading(plant, joint, at);
                     plan.drive_torque_nm(input, reading, motor_speed, &self.memory.0)
                 }
-                _ => plan.drive_torque_nm(input, 0.0, motor_speed, &self.memory.0),
+                _ => plan.drive_torque_nm(input, 0.0.into(), motor_speed, &self.memory.0),
             };
             if let Some(coupling) = plan.coupling {
                 let wound = self.auxiliary.place[joint] - at.angle[joint];

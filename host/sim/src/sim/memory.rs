@@ -82,7 +82,7 @@ impl EffectMemory {
             let motor_speed = plan.motor_speed_rad_s(&self.0, speed[joint]);
             let at = StepState {
                 input: inputs[joint].input,
-                duty: plan.duty(input, reading, motor_speed),
+                duty: plan.duty(input, reading.into(), motor_speed),
                 energised: input.energised,
                 angle_rad: angle[joint] - plant.zeros_rad[joint],
                 speed_rad_s: speed[joint],

@@ -127,6 +127,7 @@ impl<R: Rows> Stepper<R> {
             followed: Vec::new(),
         };
         stepper.forces.memory = EffectMemory::beginning(plant, angle, speed);
+        stepper.forces.find_kicks(plant, angle);
         for (joint, plan) in plant.joints.iter().enumerate() {
             stepper.angle[joint] = angle[joint];
             stepper.speed[joint] = speed[joint];

@@ -15,6 +15,29 @@ fn the_dead_zone_swallows_and_punches() {
 }
 
 #[test]
+fn the_mean_over_a_dead_zones_edge_is_that_of_its_law() {
+    let zone = effect("dead_zone");
+    for punch in [-0.05, 0.0, 0.03] {
+        for (duty, spread) in [
+            (0.1, 0.02),
+            (-0.12, 0.05),
+            (0.03, 0.3),
+            (0.5, 0.1),
+            (0.05, 0.01),
+        ] {
+            let at = |k: i32| duty + spread * (f64::from(2 * k + 1) / 1e4 - 1.0);
+            let law = (0..10_000).map(|k| zone.command(&[0.1, punch], at(k)));
+            let mean = zone.mean_command(&[0.1, punch], duty, spread);
+            let off = mean - law.sum::<f64>() / 1e4;
+            assert!(off.abs() < 1e-4, "{punch} {duty} {spread}: {off}");
+        }
+        let jump = zone.command_jump(&[0.1, punch]);
+        let above = zone.command(&[0.1, punch], 0.1 + 1e-12);
+        assert!((jump - above).abs() < 1e-9, "{punch}: {jump} {above}");
+    }
+}
+
+#[test]
 fn drives_weaken_as_their_laws_say() {
     let at = DriveState {
         speed_rad_s: 3.0,

@@ -183,12 +183,12 @@ impl PosedPlant {
         inputs[joint] = input;
         let plan = &self.plant.joints[joint];
         body.drive_nm[drive] = match &body.general {
-            None => plan.drive_torque_nm(input, 0.0, 0.0, &[]),
+            None => plan.drive_torque_nm(input, 0.0.into(), 0.0, &[]),
             Some(general) => {
                 let reading = self.plant.encoded_rad(joint, general.angle_rad());
                 let cells = general.memory();
                 let motor_speed = plan.motor_speed_rad_s(cells, body.speed_rad_s[joint]);
-                plan.drive_torque_nm(input, reading, motor_speed, cells)
+                plan.drive_torque_nm(input, reading.into(), motor_speed, cells)
             }
         };
     }

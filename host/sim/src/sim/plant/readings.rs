@@ -29,13 +29,18 @@ impl Plant {
     /// How fast those readings change, rad/s, at these relative speeds; of a joint whose rate alone
     /// is logged, what its sensor reads.
     pub(in crate::sim) fn encoded_rad_s(&self, joint: usize, speed_rad_s: &[f64]) -> f64 {
+        let read_rad_s = self.encoded_slope_rad_s(joint, speed_rad_s);
+        self.rate_scale(joint) * read_rad_s + self.rate_bias_rad_s(joint)
+    }
+
+    /// How fast what a joint's own encoder reads changes, rad/s, at these relative speeds.
+    pub(in crate::sim) fn encoded_slope_rad_s(&self, joint: usize, speed_rad_s: &[f64]) -> f64 {
         let true_speed = if self.absolute {
             speed_rad_s[..=joint].iter().sum::<f64>()
         } else {
             speed_rad_s[joint]
         };
-        let read_rad_s = self.joints[joint].reading_slope() * true_speed;
-        self.rate_scale(joint) * read_rad_s + self.rate_bias_rad_s(joint)
+        self.joints[joint].reading_slope() * true_speed
     }
 
     /// What is read per rate of a joint whose rate alone is logged.

@@ -9,6 +9,7 @@ use crate::sim::rows::Rows;
 impl<R: Rows> Stepper<R> {
     /// Advances by `h` s under constant inputs.
     pub(super) fn step(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
+        self.forces.half_step_s = 0.5 * h;
         if plant.has_auxiliary() {
             return self.step_with_auxiliary(plant, inputs, h);
         }
