@@ -100,9 +100,10 @@ fn tried(
     let mut logs = LogSet::default();
     for log in &bench.logs {
         let request = LogRequest::whole(write(&log.name, &log.csv)?);
-        match log.held_out {
-            true => logs.held_out.push(request),
-            false => logs.training.push(request),
+        if log.held_out {
+            logs.held_out.push(request);
+        } else {
+            logs.training.push(request);
         }
     }
     let model = Model::load(&nominal)?;

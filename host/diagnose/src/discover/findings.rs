@@ -211,9 +211,10 @@ fn with_values(expression: &str, values: &[FittedValue]) -> String {
     let mut said = String::new();
     let mut rest = expression;
     while let Some(first) = rest.chars().next() {
-        let end = match is_letter(first) {
-            true => rest.find(|c| !is_letter(c)).unwrap_or(rest.len()),
-            false => first.len_utf8(),
+        let end = if is_letter(first) {
+            rest.find(|c| !is_letter(c)).unwrap_or(rest.len())
+        } else {
+            first.len_utf8()
         };
         let (word, behind) = rest.split_at(end);
         match values.iter().find(|value| value.key == word) {

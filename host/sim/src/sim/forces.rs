@@ -176,15 +176,11 @@ impl<R: Rows> Forces<R> {
         if plant.needs_bearing_load {
             self.find_bearing_loads(plant, at, out);
         }
-        for joint in 0..n {
+        for (joint, &input) in inputs[..n].iter().enumerate() {
             if let Contact::Sliding(direction) = at.contact[joint] {
                 let speed = (direction * at.speed[joint]).max(0.0);
-                let friction = self.friction_nm(
-                    (plant, joint),
-                    inputs[joint],
-                    [at.angle[joint], speed],
-                    direction,
-                );
+                let friction =
+                    self.friction_nm((plant, joint), input, [at.angle[joint], speed], direction);
                 self.torque[joint] -= direction * friction;
             }
         }
