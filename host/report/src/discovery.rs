@@ -18,7 +18,7 @@ const SHOWN: usize = 5;
 /// Everything a discovery says that fits a terminal.
 pub fn discovery_text(discovery: &Discovery, names: &JointNames) -> String {
     let diagnosis = &discovery.diagnosis;
-    let mut headline = vec![format!("Verdict: {}", verdict_sentence(discovery.verdict))];
+    let mut headline = vec![format!("Verdict: {}", verdict_sentence(discovery))];
     if discovery.verdict == DiscoveryVerdict::Unfit {
         headline.extend(diagnosis.summary.iter().cloned());
     }
@@ -56,7 +56,7 @@ pub fn law_section(discovery: &Discovery, names: &JointNames) -> Option<Section>
                torque over this variable is allowed, with 95 % intervals; where they leave the \
                curve its shape is wrong.",
         body: html! {
-            p { (verdict_sentence(discovery.verdict)) }
+            p { (verdict_sentence(discovery)) }
             @for term in &discovery.terms {
                 div.effect {
                     div { p { code { (line(term, names)) } } }
@@ -96,8 +96,8 @@ pub fn term_chart(picture: &TermPicture) -> Chart {
 }
 
 /// The verdict in a sentence.
-pub fn verdict_sentence(verdict: DiscoveryVerdict) -> &'static str {
-    match verdict {
+pub fn verdict_sentence(discovery: &Discovery) -> &'static str {
+    match discovery.verdict {
         DiscoveryVerdict::NothingMissing => {
             "nothing is missing. The model explains the logs to their noise."
         }
@@ -105,12 +105,21 @@ pub fn verdict_sentence(verdict: DiscoveryVerdict) -> &'static str {
             "wrong value. With other values in the file nothing is missing."
         }
         DiscoveryVerdict::Found => "found. This law leaves nothing but noise.",
+        DiscoveryVerdict::Ambiguous if discovery.others.is_empty() => {
+            "found. This law leaves nothing but noise, and is not proven to be the only one."
+        }
         DiscoveryVerdict::Ambiguous => {
             "found, and not alone. Other laws leave as little: the logs do not tell them apart."
+        }
+        DiscoveryVerdict::Partial if discovery.is_cut_short() => {
+            "a part, so far. The search was ended, and what was not tried may explain the rest."
         }
         DiscoveryVerdict::Partial => {
             "a part. This law removes a part of the error; more than noise is left, and more \
              terms do not explain it."
+        }
+        DiscoveryVerdict::NotFound if discovery.is_cut_short() => {
+            "not found so far. The search was ended, and what was not tried may hold the law."
         }
         DiscoveryVerdict::NotFound => {
             "not found. No law of the joint's angle, speed, load, input, supply or time explains \

@@ -37,6 +37,7 @@ use std::path::PathBuf;
 
 /// Discover the law that a model and the library lack, as an expression.
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("force", |arg| arg.help("Replace page and model if they exist")))]
 pub struct DiscoverArgs {
     /// Model file
     model: PathBuf,

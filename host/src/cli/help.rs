@@ -12,8 +12,8 @@ const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Measure",
         &[
-            "excite", "init", "log", "compare", "diagnose", "next", "add", "fit", "drift",
-            "effects", "import", "model", "view", "identify", "map",
+            "excite", "init", "log", "compare", "diagnose", "discover", "next", "add", "fit",
+            "drift", "effects", "import", "model", "view", "identify", "map",
         ],
     ),
     (

@@ -146,6 +146,11 @@ impl Discovery {
         add_effects_from(&text, path, &candidates, &start, split, horizon, progress)
     }
 
+    /// Whether something was not tried because the time was over, or the user took what there was.
+    pub fn is_cut_short(&self) -> bool {
+        !self.diagnosis.left_out.is_empty()
+    }
+
     /// Whether there is a law to work with.
     pub fn has_law(&self) -> bool {
         use DiscoveryVerdict as V;

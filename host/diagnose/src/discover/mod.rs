@@ -63,8 +63,9 @@ pub fn discover_logs(
     let terms = Terms::of(model, &motions)?;
     let found = diagnose_logs(&terms.model, file, logs, &of_terms(options), progress)?;
     let mut found = terms.discovery(found);
-    if found.discovery.has_law() {
-        found.discovery.diagnosis.next = next(file, logs);
+    if let Some(lines) = next(&found.discovery) {
+        let lines = lines.iter().map(|line| with_names(line, file.path, logs));
+        found.discovery.diagnosis.next = lines.collect();
     }
     Ok(found)
 }
@@ -134,20 +135,24 @@ impl Terms {
     }
 }
 
-/// How the law comes into a model, and what that gains.
-fn next(file: ModelFile, logs: &LogSet) -> Vec<String> {
-    let (judged, holdout) = if logs.held_out.is_empty() {
-        (LOGS, String::new())
-    } else {
-        (HELD_OUT, format!(" --holdout {HELD_OUT}"))
-    };
-    let lines = [
-        format!("Add it: handstand discover {MODEL} {LOGS}{holdout} -o better.toml"),
-        format!("See what it gains: handstand compare {MODEL} {judged} --model better.toml"),
-    ];
-    lines
-        .map(|line| with_names(&line, file.path, logs))
-        .to_vec()
+/// What to do next: how a law comes into a model, and where one fails that has none; none where a
+/// diagnosis has said so already.
+fn next(discovery: &Discovery) -> Option<Vec<String>> {
+    let again = format!("handstand discover {MODEL} {LOGS} --holdout {HELD_OUT}");
+    if discovery.has_law() {
+        return Some(vec![
+            format!("Add it: {again} -o better.toml"),
+            format!("See what it gains: handstand compare {MODEL} {HELD_OUT} --model better.toml"),
+        ]);
+    }
+    if discovery.verdict != DiscoveryVerdict::NotFound {
+        return None;
+    }
+    let to_the_end = discovery
+        .is_cut_short()
+        .then(|| format!("Search to the end: {again}"));
+    let see = format!("See where it fails: handstand compare {MODEL} {LOGS}");
+    Some(to_the_end.into_iter().chain([see]).collect())
 }
 
 /// Gives a term a name that none of the model's own laws has.

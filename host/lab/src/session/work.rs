@@ -184,7 +184,7 @@ impl LabSession {
         let discovery = found.discovery;
         if !discovery.has_law() {
             return Err(Error::usage(
-                verdict_sentence(discovery.verdict),
+                verdict_sentence(&discovery),
                 "bring a motion that shows more, or mend what the check of the logs says",
             ));
         }
