@@ -10,6 +10,7 @@ from ._values import FittedValue
 __all__ = [
     "Comparison",
     "Diagnosis",
+    "Discovery",
     "Draft",
     "Gains",
     "LogCheck",
@@ -21,6 +22,7 @@ __all__ = [
     "add",
     "compare",
     "diagnose",
+    "discover",
     "drift",
     "effects",
     "fit",
