@@ -71,15 +71,19 @@ pub fn law_section(discovery: &Discovery, names: &JointNames) -> Option<Section>
 
 /// A term beside what the motions say.
 pub fn term_chart(picture: &TermPicture) -> Chart {
-    let x_label = match picture.variable {
-        TermVariable::Angle => "angle, rad",
-        TermVariable::Speed => "speed, rad/s",
-        TermVariable::Drive => "torque of the drive, N m",
+    let x_label = match (picture.variable, picture.slides) {
+        (TermVariable::Angle, false) => "angle, rad",
+        (TermVariable::Angle, true) => "displacement, m",
+        (TermVariable::Speed, false) => "speed, rad/s",
+        (TermVariable::Speed, true) => "speed, m/s",
+        (TermVariable::Drive, false) => "torque of the drive, N m",
+        (TermVariable::Drive, true) => "force of the drive, N",
     };
-    let y_label = if picture.is_friction {
-        "friction, N m"
-    } else {
-        "torque, N m"
+    let y_label = match (picture.is_friction, picture.slides) {
+        (true, false) => "friction, N m",
+        (true, true) => "friction, N",
+        (false, false) => "torque, N m",
+        (false, true) => "force, N",
     };
     let curve = picture.curve.iter().map(|[x, y]| (*x, *y));
     let points = picture.points.iter().map(|[x, y, ..]| (*x, *y));

@@ -2,9 +2,9 @@
 //! effect of the library explains it.
 //!
 //! Where `diagnose` ends in `unexplained`, the torque that is missing may still follow from what is
-//! measured. Some forty terms in a joint's angle, speed, load, input, supply and time (powers,
+//! measured. Some fifty terms in a joint's angle, speed, load, input, supply and time (powers,
 //! springs about a place, detents, ripples, thresholds; frictions that hold at rest) are tried
-//! alone, in pairs and in threes, fitted to the trajectories with the model's free values, and
+//! alone and in twos (`--terms 3`: in threes), fitted to the trajectories with the model's free values, and
 //! judged on motions that took no part in the fit, like effects that have a name. What is left out
 //! is what a law of one instant cannot say: what was before, and bodies that are not measured.
 //!
@@ -13,11 +13,12 @@
 //! ```
 //!
 //! `-o` writes the model with the law: an `[[expression]]` and an `[[effect]]` per term, with
-//! intervals. `compare`, `fit`, `diagnose` and `simulate` use it as any other effect.
+//! intervals. `compare`, `fit` and `diagnose` use it as any other effect.
 //!
 //! The verdict is `found`, `ambiguous` (several laws leave as little), `partial`, `not_found`,
-//! `nothing_missing`, `wrong_value` or `unfit`; exit code 1 for `not_found` and `unfit`. `--json`
-//! prints it; its keys are in `docs/json.md`.
+//! `nothing_missing`, `wrong_value` or `unfit`; exit code 1 for `not_found` and `unfit`, and
+//! where `-o` asks for a model and there is none to write. `--json` prints it; its keys are in
+//! `docs/json.md`.
 
 use super::diagnose::until_stopped;
 use super::page::{self, PageFile};
@@ -77,11 +78,12 @@ pub fn run(args: &DiscoverArgs, console: &Console) -> Result<ExitStatus> {
     input::tell_joints(&model, console);
     let found = found(&model, &text, args, console)?;
     let written = write(&found, &text, args, console)?;
+    let lacks_model = args.output.is_some() && written.is_none();
     print(&found.discovery, &model, written, console)?;
     args.page.write(|| report(&found, args, console), console)?;
     use DiscoveryVerdict as V;
     let is_answer = !matches!(found.discovery.verdict, V::NotFound | V::Unfit);
-    Ok(ExitStatus::answer(is_answer))
+    Ok(ExitStatus::answer(is_answer && !lacks_model))
 }
 
 fn found(
@@ -108,7 +110,7 @@ fn found(
     discover_logs(model, file, &logs, &options, &heard)
 }
 
-/// Writes the model with the law, where one is wanted and found; whether it did.
+/// Writes the model with the law, where one is wanted and found; the file it wrote.
 fn write(
     found: &LogDiscovery,
     text: &str,

@@ -160,7 +160,7 @@ impl Provenance {
 /// A word of a command as a page may show it: a path from the folder `root` of the project on.
 ///
 /// # Errors
-/// A path that leads out of the project: nobody else has it.
+/// A path that leads out of the project: no other machine has it.
 pub fn in_project(word: &str, root: &Path) -> Result<String, String> {
     let (option, value) = match word.split_once('=') {
         Some((option, value)) if option.starts_with("--") => (format!("{option}="), value),
@@ -313,9 +313,9 @@ mod tests {
             assert_eq!(in_project(word, root).as_deref(), Ok(shown));
         }
         for word in [
-            "/tmp/a.jsonl",
+            "/elsewhere/a.jsonl",
             "../a.jsonl",
-            "--outcomes=/tmp/a.jsonl",
+            "--outcomes=/elsewhere/a.jsonl",
             "/home/me/handstand/../a.jsonl",
             "/home/me/handstand2/a.jsonl",
         ] {

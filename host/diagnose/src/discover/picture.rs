@@ -46,6 +46,9 @@ pub struct TermPicture {
     pub joint: usize,
     /// What it depends on.
     pub variable: TermVariable,
+    /// Whether the joint slides: then rad is m, and N m is N.
+    #[serde(default)]
+    pub slides: bool,
     /// Whether y is a friction against the motion; else a torque on the joint. Friction that
     /// depends on the speed is drawn as the torque that it makes.
     pub is_friction: bool,
@@ -109,6 +112,7 @@ fn picture(term: &DiscoveredTerm, left: &Fit, data: &FitProblem) -> Option<TermP
         kind: term.kind.clone(),
         joint: joint + 1,
         variable,
+        slides: left.model.joints[joint].slide.is_some(),
         is_friction: law.is_friction,
         points: points.collect(),
         curve,

@@ -85,7 +85,8 @@ fn pictured(picture: &TermPicture) -> Markup {
         figure.law {
             (chart.svg(420.0, 260.0))
             figcaption { (chart.legend())
-                " Dots: what the motions ask for where any torque is allowed, with 95 % intervals." }
+                " Dots: what the motions ask for where any torque is allowed, with 95 % \
+                  intervals." }
         }
     }
 }
