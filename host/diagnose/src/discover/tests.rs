@@ -43,3 +43,61 @@ fn are_laws(scales: &Scales) {
         assert_eq!(named.count(), 1, "{}", term.name);
     }
 }
+
+/// The picture of an arm with a cubic spring, drawn for a law of this exponent, and the spring's
+/// size, N m/rad^3.
+fn pictured(exponent: f64) -> (TermPicture, f64) {
+    let (arm, law) = crate::challenge::unknown_law_arm(1, "cubic_spring").unwrap();
+    let size = law
+        .said()
+        .rsplit(' ')
+        .next()
+        .unwrap()
+        .parse::<f64>()
+        .unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let logs = arm.logs.iter().filter(|log| !log.held_out).map(|log| {
+        let path = dir.path().join(&log.name);
+        std::fs::write(&path, &log.csv).unwrap();
+        crate::log::LogRequest::whole(path)
+    });
+    let logs: Vec<_> = logs.collect();
+    let text = arm
+        .true_model_toml
+        .replace("q^3", &format!("q * abs(q)^{}", exponent - 1.0));
+    let model = Model::parse(&text, std::path::Path::new("arm.toml")).unwrap();
+    let motions = crate::log::read(&logs, &model.log).unwrap();
+    let term = DiscoveredTerm {
+        kind: "cubic_spring".into(),
+        joint: Some(1),
+        site: "torque",
+        expression: "-c * q^3".into(),
+        with_values: format!("-{size} * q^3"),
+        parameters: Vec::new(),
+        definition: None,
+    };
+    let found = pictures(&[term], &model, &motions, Horizon::Seconds(1.0));
+    (found.into_iter().next().unwrap(), size)
+}
+
+#[test]
+fn points_lie_on_the_true_law_whatever_law_is_drawn() {
+    let (right, size) = pictured(3.0);
+    assert!(right.points.len() > 6, "{right:#?}");
+    for [x, y, low, high] in &right.points {
+        let off = y + size * x.powi(3);
+        assert!(
+            off.abs() < 2.0 * (high - low),
+            "at {x}: {off}, {low} to {high}"
+        );
+    }
+    // Beside a law of another shape they tell which one is right.
+    let (wrong, _) = pictured(2.0);
+    let mean = |of: &dyn Fn(f64, f64) -> f64| {
+        let squares = wrong.points.iter().map(|[x, y, ..]| of(*x, *y).powi(2));
+        squares.sum::<f64>() / wrong.points.len() as f64
+    };
+    let to_true = mean(&|x, y| y + size * x.powi(3));
+    let to_drawn = mean(&|x, y| y + size * x * x.abs());
+    assert!(to_true < 0.5 * to_drawn, "{to_true} {to_drawn}: {wrong:#?}");
+}
