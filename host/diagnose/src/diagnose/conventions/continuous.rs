@@ -1,6 +1,6 @@
 //! Corrections with a free number: a zero that lies elsewhere, a column that is shifted in time.
 
-use super::correction::{Correction, LogColumn};
+use super::correction::{Correction, LogColumn, is_regulated};
 use super::trial::{CorrectionTrial, Effort, Trial};
 use crate::log::LEAST_ROWS;
 use crate::motion::Motion;
@@ -23,7 +23,13 @@ pub(super) fn continuous(bench: &CorrectionTrial) -> Vec<Correction> {
     let model = &bench.model;
     let mut found = Vec::new();
     for joint in 0..model.link_count() {
-        found.extend(zero(bench, joint));
+        let position = LogColumn::Position(joint);
+        if position.column(model).is_some() {
+            if is_regulated(model, joint) {
+                found.extend(zero(bench, &[position, LogColumn::Input(joint)]));
+            }
+            found.extend(zero(bench, &[position]));
+        }
     }
     let joints = 0..model.link_count();
     let inputs = joints.clone().map(LogColumn::Input);
@@ -36,19 +42,16 @@ pub(super) fn continuous(bench: &CorrectionTrial) -> Vec<Correction> {
     found
 }
 
-fn zero(bench: &CorrectionTrial, joint: usize) -> Option<Correction> {
-    let quantity = LogColumn::Position(joint);
-    let given = quantity.column(&bench.model)?.offset;
+fn zero(bench: &CorrectionTrial, columns: &[LogColumn]) -> Option<Correction> {
     let step = TAU / ZEROS as f64;
-    let offsets =
-        (1..ZEROS).map(|i| given + step * i as f64 - if 2 * i > ZEROS { TAU } else { 0.0 });
-    let best = best(bench, offsets.collect(), step, |offset| {
-        Correction::Offset(quantity, offset)
+    let added = (1..ZEROS).map(|i| step * i as f64 - if 2 * i > ZEROS { TAU } else { 0.0 });
+    let best = best(bench, added.collect(), step, |added| {
+        Correction::Offset(columns.to_vec(), added)
     })?;
-    let Correction::Offset(_, offset) = best.correction else {
+    let Correction::Offset(_, added) = best.correction else {
         return None;
     };
-    let off = (offset - given + PI).rem_euclid(TAU) - PI;
+    let off = (added + PI).rem_euclid(TAU) - PI;
     (off.abs() > LEAST_ZERO_RAD).then_some(best.correction)
 }
 

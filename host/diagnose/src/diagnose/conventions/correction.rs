@@ -62,8 +62,8 @@ pub enum Correction {
     Reverse(Vec<LogColumn>),
     /// The angles are zero elsewhere.
     AngleZero(AngleZero),
-    /// A column's zero lies elsewhere: its new offset, in SI.
-    Offset(LogColumn, f64),
+    /// The zeros of these columns lie elsewhere: what is added to their offsets, in SI.
+    Offset(Vec<LogColumn>, f64),
     /// These columns are written in other units.
     Unit(Vec<(LogColumn, Unit)>),
     /// The angles are measured from something else.
@@ -87,9 +87,11 @@ impl Correction {
                 }
             }
             Correction::AngleZero(zero) => new.angle_zero = *zero,
-            Correction::Offset(quantity, offset) => {
-                for column in quantity.columns_mut(&mut new) {
-                    column.offset = *offset;
+            Correction::Offset(columns, added) => {
+                for quantity in columns {
+                    for column in quantity.columns_mut(&mut new) {
+                        column.offset += added;
+                    }
                 }
             }
             Correction::Unit(columns) => {
@@ -130,6 +132,27 @@ impl Correction {
             .iter()
             .map(|motion| reread(motion, &model.log, &new.log))
             .collect()
+    }
+
+    /// The joint (index from 0) whose angle and goal it reads otherwise alike, as another
+    /// calibration of its servo does: the drive moves as before, and stands elsewhere.
+    pub fn calibrates(&self) -> Option<usize> {
+        let holds = |columns: &[LogColumn]| {
+            let goals = columns.iter().filter_map(|column| match column {
+                LogColumn::Input(joint) => Some(*joint),
+                _ => None,
+            });
+            let mut both = goals.filter(|joint| columns.contains(&LogColumn::Position(*joint)));
+            both.next()
+        };
+        match self {
+            Correction::Reverse(columns) | Correction::Offset(columns, _) => holds(columns),
+            Correction::Unit(columns) => {
+                let columns: Vec<LogColumn> = columns.iter().map(|(column, _)| *column).collect();
+                holds(&columns)
+            }
+            _ => None,
+        }
     }
 
     /// Whether it changes a number that could have any value, not one of a few alternatives.
@@ -176,15 +199,12 @@ pub(super) fn alternatives(model: &Model, motions: &[Motion]) -> Vec<Correction>
     all
 }
 
-/// How far the joint moves over all motions, rad.
-pub(super) fn travel_rad(motions: &[Motion], joint: usize) -> f64 {
-    let angles = || {
-        let angles = motions
-            .iter()
-            .flat_map(|motion| &motion.position_rad[joint]);
-        angles.copied().filter(|angle| angle.is_finite())
-    };
-    angles().fold(f64::NEG_INFINITY, f64::max) - angles().fold(f64::INFINITY, f64::min)
+/// Whether a joint's servo regulates an angle that the log has beside its goal: a calibration of
+/// the servo is in both.
+pub(super) fn is_regulated(model: &Model, joint: usize) -> bool {
+    let columns = [LogColumn::Position(joint), LogColumn::Input(joint)];
+    matches!(model.joints[joint].drive, Drive::Position { .. })
+        && columns.iter().all(|column| column.column(model).is_some())
 }
 
 /// The other units of the column's dimension: the one that its name says where it says one, counts

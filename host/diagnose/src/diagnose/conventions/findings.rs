@@ -41,11 +41,7 @@ pub(super) fn finding(found: &LogFault, model: &Model, file: ModelFile) -> Resul
             Severity::Refuse
         },
         place: Some(Place::file(file.path)),
-        what: format!(
-            "{}; {}",
-            what(&trial.correction, model),
-            proof(trial, model)
-        ),
+        what: format!("{}; {}", what(found, model), proof(trial, model)),
         remedy,
         proof: Some(Proof {
             before_rad: trial.before_rad,
@@ -112,30 +108,53 @@ fn name(quantity: LogColumn, model: &Model) -> String {
     names.join(" and ")
 }
 
-fn what(correction: &Correction, model: &Model) -> String {
-    match correction {
+fn names(columns: &[LogColumn], model: &Model) -> String {
+    let names: Vec<String> = columns.iter().map(|column| name(*column, model)).collect();
+    names.join(" and ")
+}
+
+/// "elbow.position and elbow.goal are 0.523 rad off (30.0 deg, 29.1 to 30.8 deg)": the last is the
+/// 95 % interval, where there is one.
+fn zero_off(columns: &[LogColumn], off: f64, interval: Option<[f64; 2]>, model: &Model) -> String {
+    let are = if columns.len() > 1 { "are" } else { "is" };
+    let first = columns.first().and_then(|column| column.column(model));
+    let slides = first.is_some_and(|column| column.unit.dimension == Dimension::Length);
+    let (si, unit, of_si) = if slides {
+        ("m", "mm", 1e3)
+    } else {
+        ("rad", "deg", 1f64.to_degrees())
+    };
+    let interval = interval.map_or(String::new(), |[low, high]| {
+        format!(
+            ", 95 % interval {:.1} to {:.1} {unit}",
+            of_si * low,
+            of_si * high
+        )
+    });
+    let names = names(columns, model);
+    format!(
+        "{names} {are} {off:.3} {si} off ({:.1} {unit}{interval})",
+        of_si * off
+    )
+}
+
+fn what(found: &LogFault, model: &Model) -> String {
+    match &found.trial.correction {
         Correction::Reverse(columns) => {
-            let names: Vec<String> = columns.iter().map(|q| name(*q, model)).collect();
-            let (count, s) = if names.len() > 1 {
-                ("count", "")
-            } else {
-                ("counts", "")
-            };
-            format!("{} {count}{s} the other way round", names.join(" and "))
+            let count = if columns.len() > 1 { "count" } else { "counts" };
+            format!("{} {count} the other way round", names(columns, model))
         }
         Correction::AngleZero(zero) => {
             let place = zero.name();
             format!("the angles are zero where the first link is {place}")
         }
-        Correction::Offset(quantity, offset) => {
-            let given = quantity.column(model).map_or(0.0, |column| column.offset);
-            format!(
-                "{} is {:.3} {} off",
-                name(*quantity, model),
-                given - offset,
-                quantity
-                    .column(model)
-                    .map_or("rad", |column| column.unit.dimension.si_unit())
+        Correction::Offset(columns, added) => {
+            let interval = found.zero.map(|zero| zero.interval.map(|added| -added));
+            zero_off(
+                columns,
+                -added,
+                interval.map(|[low, high]| [high, low]),
+                model,
             )
         }
         Correction::Unit(columns) => {

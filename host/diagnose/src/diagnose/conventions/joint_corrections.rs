@@ -1,6 +1,7 @@
 //! What may be wrong with how a model reads the motion of one joint.
 
-use super::correction::{Correction, LogColumn, other_units, travel_rad};
+use super::correction::{Correction, LogColumn, is_regulated, other_units};
+use super::travel::travel_rad;
 use crate::model::{Model, Unit};
 use crate::motion::Motion;
 use std::f64::consts::PI;
@@ -21,17 +22,33 @@ pub(super) fn of_motion(model: &Model, motions: &[Motion], joint: usize) -> Vec<
     let rate_slope = speed_slope(motions, joint, |motion| motion.rate(joint));
     let agree = [(velocity, slope), (LogColumn::Rate(joint), rate_slope)].into_iter();
     let along = agree.filter_map(|(speed, slope)| slope.filter(|s| *s > 0.0).map(|_| speed));
-    let mut all = vec![Correction::Reverse(
-        [position].into_iter().chain(along).collect(),
-    )];
+    let reversed: Vec<LogColumn> = [position].into_iter().chain(along).collect();
+    let goal = is_regulated(model, joint).then_some(LogColumn::Input(joint));
+    let with_goal = |columns: &[LogColumn]| goal.map(|goal| [columns, &[goal]].concat());
+    let mut all: Vec<Correction> = with_goal(&reversed)
+        .into_iter()
+        .map(Correction::Reverse)
+        .collect();
+    all.push(Correction::Reverse(reversed));
     let travel_rad = travel_rad(motions, joint);
     let plausible = |unit: &Unit| PLAUSIBLE_RAD.contains(&(travel_rad * unit.si / column.unit.si));
     let units = other_units(model, motions, position)
         .into_iter()
         .filter(plausible);
-    all.extend(units.map(|unit| position_unit(model, joint, unit, slope)));
+    let goals_unit = goal
+        .and_then(|goal| goal.column(model))
+        .map(|goal| goal.unit);
+    for unit in units {
+        let columns = position_unit(model, joint, unit, slope);
+        if let Some(goal) = goal.filter(|_| goals_unit == Some(column.unit)) {
+            let with_goal = columns.iter().copied().chain([(goal, unit)]);
+            all.push(Correction::Unit(with_goal.collect()));
+        }
+        all.push(Correction::Unit(columns));
+    }
     if joint > 0 && model.joints[joint].slide.is_none() {
-        all.push(Correction::Offset(position, column.offset + PI));
+        let turned = with_goal(&[position]).into_iter().chain([vec![position]]);
+        all.extend(turned.map(|columns| Correction::Offset(columns, PI)));
     }
     all
 }
@@ -47,7 +64,12 @@ pub(super) fn of_speed(model: &Model, motions: &[Motion], speed: LogColumn) -> V
 }
 
 /// The position in another unit; a speed that agreed with it goes along.
-fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) -> Correction {
+fn position_unit(
+    model: &Model,
+    joint: usize,
+    unit: Unit,
+    slope: Option<f64>,
+) -> Vec<(LogColumn, Unit)> {
     let mut columns = vec![(LogColumn::Position(joint), unit)];
     let velocity = LogColumn::Velocity(joint);
     let agreed = slope.is_some_and(|slope| (0.8..1.25).contains(&slope));
@@ -65,7 +87,7 @@ fn position_unit(model: &Model, joint: usize, unit: Unit, slope: Option<f64>) ->
     {
         columns.push((velocity, unit));
     }
-    Correction::Unit(columns)
+    columns
 }
 
 /// A logged speed per speed of the angle, by least squares; none where no speed is logged.

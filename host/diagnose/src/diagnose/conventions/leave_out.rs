@@ -217,7 +217,7 @@ fn proven(
         .zip(&all.shares)
         .filter(|(window, _)| !inside(window));
     let kept: Vec<f64> = kept
-        .flat_map(|(_, shares)| shares.iter().map(|s| s * s))
+        .flat_map(|(_, shares)| shares.iter().flatten().map(|s| s * s))
         .collect();
     let after = (kept.iter().sum::<f64>() / kept.len().max(1) as f64).sqrt();
     let proven =

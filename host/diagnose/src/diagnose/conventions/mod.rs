@@ -18,13 +18,16 @@ mod reread;
 mod search;
 #[cfg(test)]
 mod tests;
+mod travel;
 mod trial;
+mod zero;
 
 pub use correction::{Correction, LogColumn};
 pub use findings::ModelFile;
 pub use leave_out::{LeaveOut, Unusable, leave_out};
 pub use search::{LogFault, search};
 pub use trial::{Trial, scales_torque_by};
+pub use zero::FittedZero;
 
 use crate::error::Result;
 use crate::log::{LogFinding, LogRequest, expanded, read};
@@ -43,8 +46,8 @@ pub fn findings(
     model: &Model,
     file: ModelFile,
 ) -> Result<Vec<LogFinding>> {
-    let mut findings = check(requests, model, file)?;
-    findings.extend(crate::log::check(requests, model)?);
+    let (mut findings, mended) = disagreements(requests, model, file)?;
+    findings.extend(crate::log::check(requests, &mended)?);
     Ok(findings)
 }
 
@@ -54,6 +57,15 @@ pub fn findings(
 /// # Errors
 /// Only what the system refuses; logs that cannot be read are for [`crate::log::check()`] to judge.
 pub fn check(requests: &[LogRequest], model: &Model, file: ModelFile) -> Result<Vec<LogFinding>> {
+    disagreements(requests, model, file).map(|(findings, _)| findings)
+}
+
+/// What does not agree, and the model with the units that do: rows are judged as they are meant.
+fn disagreements(
+    requests: &[LogRequest],
+    model: &Model,
+    file: ModelFile,
+) -> Result<(Vec<LogFinding>, Model)> {
     let (mut motions, mut origins) = (Vec::new(), Vec::new());
     let requests = expanded(requests)?;
     for request in requests.iter().filter(|request| !request.is_json()) {
@@ -67,14 +79,17 @@ pub fn check(requests: &[LogRequest], model: &Model, file: ModelFile) -> Result<
             motions.push(motion);
         }
     }
+    let (mut all, mut mended, mut in_right_units) = (Vec::new(), model.clone(), model.clone());
     if motions.is_empty() {
-        return Ok(Vec::new());
+        return Ok((all, in_right_units));
     }
-    let mut all = Vec::new();
-    let mut mended = model.clone();
     for found in search(model, &motions) {
         all.push(findings::finding(&found, &mended, file)?);
-        mended = found.trial.correction.applied(&mended);
+        let correction = &found.trial.correction;
+        mended = correction.applied(&mended);
+        if matches!(correction, Correction::Unit(_)) {
+            in_right_units = correction.applied(&in_right_units);
+        }
     }
     let read: Vec<Motion> = motions
         .iter()
@@ -86,7 +101,7 @@ pub fn check(requests: &[LogRequest], model: &Model, file: ModelFile) -> Result<
             .iter()
             .map(|l| findings::unusable(l, &mended, &motions, &origins)),
     );
-    Ok(all)
+    Ok((all, in_right_units))
 }
 
 /// The motions of a log, also where times far apart, of milliseconds declared as seconds, would
@@ -111,7 +126,17 @@ fn readable(request: &LogRequest, model: &Model) -> Vec<Motion> {
 /// Share of the motion that the model leaves unexplained, from fitted start states: 0 nothing, 1 as
 /// much as going on at constant speed does; none where no joint moves.
 pub fn unexplained(model: &Model, motions: &[Motion]) -> Option<f64> {
-    let few = crate::motion::excerpts(motions, search::SAMPLES);
-    let reading = rating::ModelReading::new(model.clone(), few);
-    reading.rated(trial::Effort::Starts).share()
+    reading(model, motions).rated(trial::Effort::Starts).share()
+}
+
+/// The same with the model's free values fitted.
+pub fn unexplained_refitted(model: &Model, motions: &[Motion]) -> Option<f64> {
+    reading(model, motions)
+        .rated(trial::Effort::ValuesToTheEnd)
+        .share()
+}
+
+fn reading(model: &Model, motions: &[Motion]) -> rating::ModelReading {
+    let few = crate::motion::excerpts(motions, search::affordable(search::SAMPLES, model));
+    rating::ModelReading::new(model.clone(), few)
 }

@@ -17,6 +17,8 @@ use rayon::prelude::*;
 /// moves: what friction or its lack may look like.
 pub(super) fn rivals_friction(correction: &Correction) -> Option<usize> {
     match correction {
+        // The drive moves as before.
+        _ if correction.calibrates().is_some() => None,
         Correction::Drive(joint, ..) => Some(*joint),
         Correction::Unit(columns) => columns.iter().find_map(|(column, _)| joint_of(*column)),
         Correction::Reverse(columns) => match columns.as_slice() {

@@ -127,9 +127,9 @@ fn longest_s(motions: &[Motion]) -> f64 {
 /// Error of a model, window by window.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rating {
-    /// Per window, per signal that says something: error over the signal's plain prediction's, at
-    /// most 2.
-    pub shares: Vec<Vec<f64>>,
+    /// Per window, per signal: error over the signal's plain prediction's, at most 2; none where
+    /// the signal says nothing.
+    pub shares: Vec<Vec<Option<f64>>>,
     /// Root-mean-square error, rad, over all joints.
     pub rms_rad: f64,
 }
@@ -185,9 +185,10 @@ impl Rating {
         let plain: Vec<f64> = plain.iter().map(|sum| (sum / all).sqrt()).collect();
         let says = |signal: &usize| plain[*signal] > LEAST_MOVEMENT * data.sigma[*signal];
         let share = |squares: &Vec<f64>| {
-            let signals = (0..signals).filter(says);
+            let share = |signal: usize| (squares[signal].sqrt() / plain[signal]).min(MOST);
+            let signals = 0..signals;
             signals
-                .map(|signal| (squares[signal].sqrt() / plain[signal]).min(MOST))
+                .map(|signal| says(&signal).then(|| share(signal)))
                 .collect()
         };
         Rating {
@@ -199,9 +200,18 @@ impl Rating {
     /// Root mean square of all shares: 0 where all is explained, 1 where the model does as badly as
     /// going on at constant speed; none where no joint says anything.
     pub fn share(&self) -> Option<f64> {
-        let shares = || self.shares.iter().flatten();
-        let count = shares().count();
-        let squares: f64 = shares().map(|share| share * share).sum();
-        (count > 0).then(|| (squares / count as f64).sqrt())
+        root_mean_square(self.shares.iter().flatten().flatten())
     }
+
+    /// The same of one joint alone.
+    pub fn share_of(&self, joint: usize) -> Option<f64> {
+        let own = self.shares.iter().map(|shares| shares.get(joint));
+        root_mean_square(own.flatten().flatten())
+    }
+}
+
+fn root_mean_square<'a>(shares: impl Iterator<Item = &'a f64> + Clone) -> Option<f64> {
+    let count = shares.clone().count();
+    let squares: f64 = shares.map(|share| share * share).sum();
+    (count > 0).then(|| (squares / count as f64).sqrt())
 }

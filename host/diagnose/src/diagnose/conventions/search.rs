@@ -1,12 +1,14 @@
 //! Looks for the corrections that clearly lower the error, one after another.
 
 use super::continuous::{LEAST_ZERO_RAD, continuous};
-use super::correction::{Correction, LogColumn, alternatives, time_units, travel_rad};
+use super::correction::{Correction, LogColumn, alternatives, time_units};
 use super::drives::drives;
 use super::leave_out::without_stalled;
 use super::plain_friction::rivals_friction;
 use super::rating::ModelReading;
+use super::travel::{doubts_travel, stands_still, units_of_travel};
 use super::trial::{CorrectionTrial, Effort, Trial, scales_torque_by};
+use super::zero::{self, FittedZero};
 use crate::fitting::coarsened;
 use crate::model::{Model, Unit};
 use crate::motion::{Motion, excerpts};
@@ -34,7 +36,8 @@ pub(super) const SAMPLES: usize = 6000;
 const SAMPLES_CONTINUOUS: usize = 2000;
 /// Corrections that are judged with fitted start states.
 const JUDGED: usize = 6;
-/// Units of one input among them: where it hardly matters, each that makes it small does well.
+/// Units of the same columns among them: of an input that hardly matters each that makes it small
+/// does well, and of an angle several counts per turn may.
 const UNITS: usize = 2;
 /// An error ratio this high, from guessed start states, is not looked at again.
 const HOPELESS: f64 = 1.05;
@@ -50,6 +53,20 @@ pub struct LogFault {
     pub trial: Trial,
     /// Corrections that lower the error as far.
     pub rivals: Vec<Trial>,
+    /// Where the best moves a zero, the zero to the end.
+    pub zero: Option<FittedZero>,
+}
+
+impl LogFault {
+    /// With its zero fitted, if it is one.
+    fn with_zero(mut self, model: &Model, motions: &[Motion]) -> LogFault {
+        self.zero = zero::fitted(&self.trial.correction, model, motions);
+        if let (Some(zero), Correction::Offset(_, added)) = (self.zero, &mut self.trial.correction)
+        {
+            *added = zero.added;
+        }
+        self
+    }
 }
 
 /// The faults found, each with those before it mended.
@@ -66,6 +83,7 @@ pub fn search(model: &Model, motions: &[Motion]) -> Vec<LogFault> {
         let Some(fault) = fault(&model, &judged) else {
             break;
         };
+        let fault = fault.with_zero(&model, &judged);
         let correction = &fault.trial.correction;
         motions = correction.reread(&model, &motions);
         model = correction.applied(&model);
@@ -87,37 +105,84 @@ fn fault(model: &Model, motions: &[Motion]) -> Option<LogFault> {
         let trials = doubtful.filter_map(|correction| bench.tried(correction, Effort::Guess));
         trials.filter(|trial| trial.ratio() < 1.0).collect()
     };
-    // Where a free number gains but little more, one of a few alternatives is likelier.
-    let merit = |trial: &Trial| {
-        if trial.correction.is_continuous() {
-            trial.after / FREE_NUMBER
-        } else {
-            trial.after
-        }
-    };
+    let merit = |trial: &Trial| trial.after * likelier(model, trial);
     clear.sort_by(|a, b| merit(a).total_cmp(&merit(b)));
     let mut clear = clear.into_iter();
     let trial = clear.next()?;
-    let rivals = clear.filter(|rival| merit(rival) < AS_GOOD * merit(&trial));
+    let counts = columns_in_other_units(&trial.correction);
+    let rivals = clear.filter(|rival| {
+        let alike = counts.is_some() && columns_in_other_units(&rival.correction) == counts;
+        let as_good = if alike { ALIKE } else { AS_GOOD };
+        merit(rival) < as_good * merit(&trial)
+    });
     Some(LogFault {
         rivals: rivals.collect(),
         trial,
+        zero: None,
     })
 }
 
+/// By what the error that a correction leaves is multiplied before the best is chosen. Where a
+/// free number gains but little more, one of a few alternatives is likelier, and so is a unit whose
+/// tick is the step that the file says the sensor has.
+fn likelier(model: &Model, trial: &Trial) -> f64 {
+    match &trial.correction {
+        correction if correction.is_continuous() => 1.0 / FREE_NUMBER,
+        Correction::Unit(columns) if counts_by_known_steps(model, columns) => 1.0 / ALIKE,
+        _ => 1.0,
+    }
+}
+
+/// Whether a column's new unit is a tick as large as the file's step of that column.
+fn counts_by_known_steps(model: &Model, columns: &[(LogColumn, Unit)]) -> bool {
+    columns.iter().any(|(quantity, unit)| {
+        let step = quantity.column(model).and_then(|column| column.resolution);
+        unit.name == "ticks" && step.is_some_and(|step| (step / unit.si - 1.0).abs() < SAME_STEP)
+    })
+}
+
+/// The columns that a correction reads in other units; none where it does not.
+fn columns_in_other_units(correction: &Correction) -> Option<Vec<LogColumn>> {
+    match correction {
+        Correction::Unit(columns) => Some(columns.iter().map(|(column, _)| *column).collect()),
+        _ => None,
+    }
+}
+
+/// Steps that differ by a smaller share are the same: files write them rounded.
+const SAME_STEP: f64 = 1e-3;
+/// Units of the same columns whose errors differ by less are the same: a scale of 2 % is what
+/// friction that is off by a third does to a joint that gravity does not turn.
+const ALIKE: f64 = 2.0;
 /// How much less error a free number must leave than an alternative without one.
 const FREE_NUMBER: f64 = 0.7;
 /// Errors that differ by less are the same.
 const AS_GOOD: f64 = 1.15;
 
 fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
-    let samples = |most: usize| excerpts(motions, affordable(most, model));
-    let few = ModelReading::new(model.clone(), samples(SAMPLES_CONTINUOUS));
-    let all = samples(SAMPLES);
-    let model = &coarsened(model, &few.data);
-    let bench = CorrectionTrial::new(model, all);
-    let few = CorrectionTrial::new(model, few.data.motions);
+    let few = excerpts(motions, affordable(SAMPLES_CONTINUOUS, model));
+    let few = ModelReading::new(model.clone(), few);
+    let given = &coarsened(model, &few.data);
+    let clear = clear_corrections(given, motions, &few.data.motions);
+    if !clear.is_empty() || !is_long(model) || model.free.is_empty() {
+        return clear;
+    }
+    // Friction that is off hides a zero of a regulated joint. Of a long chain values are not
+    // fitted anew for each correction, but once.
+    let (_, fitted) = few.fitted(Effort::Values);
+    clear_corrections(&coarsened(&fitted, &few.data), motions, &few.data.motions)
+}
+
+/// The corrections that clearly lower the error of a model with these values.
+fn clear_corrections(model: &Model, motions: &[Motion], few: &[Motion]) -> Vec<Trial> {
+    let bench = CorrectionTrial::new(model, excerpts(motions, affordable(SAMPLES, model)));
     let mut corrections = alternatives(model, motions);
+    // A joint that whirls as it is read spoils every other comparison, and takes long to run.
+    let clear = judged(&bench, units_of_travel(&corrections, motions));
+    if !clear.is_empty() {
+        return clear;
+    }
+    let few = CorrectionTrial::new(model, few.to_vec());
     if is_long(model) {
         // What a wrong value or friction may do as well takes fits of all values to tell.
         corrections.retain(|c| strength_of(c).is_none() && rivals_friction(c).is_none());
@@ -137,7 +202,8 @@ fn judged(bench: &CorrectionTrial, corrections: Vec<Correction>) -> Vec<Trial> {
         .filter_map(|correction| bench.tried(correction, Effort::Guess))
         .filter(|trial| trial.ratio() < hopeless)
         .collect();
-    screened.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
+    let merit = |trial: &Trial| trial.ratio() * likelier(&bench.model, trial);
+    screened.sort_by(|a, b| merit(a).total_cmp(&merit(b)));
     let judged = most_promising(screened).into_par_iter();
     let judged = judged.filter_map(|trial| {
         // The file's free values are a start: each reading is judged with those that suit it.
@@ -165,19 +231,15 @@ fn judged(bench: &CorrectionTrial, corrections: Vec<Correction>) -> Vec<Trial> {
     judged
 }
 
-/// The first of the sorted trials, of units of one input no more than a few.
+/// The first of the sorted trials, of units of the same columns no more than a few.
 fn most_promising(sorted: Vec<Trial>) -> Vec<Trial> {
-    let units = |trial: &Trial| match &trial.correction {
-        Correction::Unit(columns) => match columns.as_slice() {
-            [(input @ LogColumn::Input(_), _)] => Some(*input),
-            _ => None,
-        },
-        _ => None,
-    };
     let mut kept: Vec<Trial> = Vec::new();
     for trial in sorted {
-        let own = units(&trial);
-        let alike = kept.iter().filter(|kept| units(kept) == own).count();
+        let own = columns_in_other_units(&trial.correction);
+        let alike = kept
+            .iter()
+            .filter(|kept| columns_in_other_units(&kept.correction) == own);
+        let alike = alike.count();
         if own.is_none() || alike < UNITS {
             kept.push(trial);
         }
@@ -278,11 +340,8 @@ fn least(bench: &CorrectionTrial, correction: &Correction) -> CorrectionThreshol
         better: 1.0,
     };
     match correction {
-        Correction::Offset(quantity, offset) => {
-            let given = quantity
-                .column(&bench.model)
-                .map_or(0.0, |column| column.offset);
-            if (offset - given).abs() > LEAST_ZERO_RAD {
+        Correction::Offset(_, added) => {
+            if added.abs() > LEAST_ZERO_RAD {
                 strict
             } else {
                 never
@@ -297,12 +356,17 @@ fn least(bench: &CorrectionTrial, correction: &Correction) -> CorrectionThreshol
                 never
             }
         }
-        Correction::Unit(columns) if stands_still(bench, correction, columns) => never,
+        Correction::Unit(_) if stands_still(bench, correction) => never,
+        Correction::Unit(columns) if scales_little(&bench.model, columns) => {
+            if is_long(&bench.model) { never } else { strict }
+        }
         // Many turns of an arm are reason enough to doubt a unit.
-        Correction::Unit(columns) if doubts_travel(bench, columns) => CorrectionThreshold {
-            ratio: 0.97,
-            better: 0.5,
-        },
+        Correction::Unit(columns) if doubts_travel(&bench.motions, columns) => {
+            CorrectionThreshold {
+                ratio: 0.97,
+                better: 0.5,
+            }
+        }
         _ => CorrectionThreshold {
             ratio: 0.8,
             better: 0.7,
@@ -310,33 +374,16 @@ fn least(bench: &CorrectionTrial, correction: &Correction) -> CorrectionThreshol
     }
 }
 
-/// Joints that travel further than this are likelier read in a wrong unit, rad.
-const DOUBTFUL_RAD: f64 = 30.0;
-
-/// Joints that travel less than this are likelier read in a wrong unit, rad: any model that is
-/// linear near its rest predicts so small a motion.
-const STILL_RAD: f64 = 0.1;
-
-/// Whether one of the columns is an angle that hardly moves as the correction reads it.
-fn stands_still(
-    bench: &CorrectionTrial,
-    correction: &Correction,
-    columns: &[(LogColumn, Unit)],
-) -> bool {
-    let motions = correction.reread(&bench.model, &bench.motions);
-    columns.iter().any(|(quantity, _)| match quantity {
-        LogColumn::Position(joint) => travel_rad(&motions, *joint) < STILL_RAD,
-        _ => false,
+/// Whether the new units are nearly the given ones, of 4000 counts a turn and of 4096: a scale of a
+/// few per cent is what wrong friction looks like, too, where it is not fitted.
+fn scales_little(model: &Model, columns: &[(LogColumn, Unit)]) -> bool {
+    columns.iter().all(|(quantity, unit)| {
+        let given = quantity.column(model).map(|column| column.unit.si);
+        given.is_some_and(|given| (unit.si / given - 1.0).abs() < LITTLE_SCALE)
     })
 }
 
-/// Whether one of the columns is an angle that travels too far as it is read.
-fn doubts_travel(bench: &CorrectionTrial, columns: &[(LogColumn, Unit)]) -> bool {
-    columns.iter().any(|(quantity, _)| match quantity {
-        LogColumn::Position(joint) => travel_rad(&bench.motions, *joint) > DOUBTFUL_RAD,
-        _ => false,
-    })
-}
+const LITTLE_SCALE: f64 = 0.1;
 
 /// Whether samples lie so far apart, or so close, that the unit of time must be wrong.
 pub(super) fn is_doubtful_time(model: &Model, motions: &[Motion]) -> bool {

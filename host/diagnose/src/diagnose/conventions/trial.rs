@@ -27,33 +27,54 @@ pub struct Trial {
     pub after_rad: f64,
     /// Share of the windows that the correction makes better, of those it changes.
     pub better: f64,
+    /// Where the correction calibrates one joint and all joints together do not suffer: the share
+    /// of that joint's motion before and after, which the others' would drown.
+    pub own: Option<[f64; 2]>,
 }
 
 impl Trial {
-    /// Error after over error before.
+    /// Error after over error before: of the joint that it calibrates, if it does.
     pub fn ratio(&self) -> f64 {
-        self.after / self.before.max(1e-12)
+        let [before, after] = self.own.unwrap_or([self.before, self.after]);
+        after / before.max(1e-12)
     }
 
     fn new(correction: Correction, before: &Rating, after: &Rating) -> Option<Trial> {
-        let (mut better, mut changed) = (0.0, 0.0);
-        for (before, after) in before.shares.iter().zip(&after.shares) {
-            let square = |shares: &[f64]| shares.iter().map(|s| s * s).sum::<f64>();
-            let (before, after) = (square(before), square(after));
-            if (before - after).abs() > 0.1 * before.max(after) {
-                changed += 1.0;
-                better += f64::from(after < before);
-            }
-        }
+        let shares = [before.share()?, after.share()?];
+        let calibrated = correction.calibrates().filter(|_| shares[1] <= shares[0]);
+        let own =
+            calibrated.and_then(|joint| Some([before.share_of(joint)?, after.share_of(joint)?]));
         Some(Trial {
-            correction,
-            before: before.share()?,
-            after: after.share()?,
+            before: shares[0],
+            after: shares[1],
             before_rad: before.rms_rad,
             after_rad: after.rms_rad,
-            better: better / f64::max(changed, 1.0),
+            better: better(before, after, calibrated.filter(|_| own.is_some())),
+            own,
+            correction,
         })
     }
+}
+
+/// Share of the windows that become better, of those that change; of one joint where one is named.
+fn better(before: &Rating, after: &Rating, joint: Option<usize>) -> f64 {
+    let square = |shares: &[Option<f64>]| {
+        let own = shares
+            .iter()
+            .enumerate()
+            .filter(|(signal, _)| joint.is_none_or(|j| j == *signal));
+        own.filter_map(|(_, share)| share.map(|share| share * share))
+            .sum::<f64>()
+    };
+    let (mut better, mut changed) = (0.0, 0.0);
+    for (before, after) in before.shares.iter().zip(&after.shares) {
+        let (before, after) = (square(before), square(after));
+        if (before - after).abs() > 0.1 * before.max(after) {
+            changed += 1.0;
+            better += f64::from(after < before);
+        }
+    }
+    better / f64::max(changed, 1.0)
 }
 
 /// What leaves so many times the error, on the windows of the model as it is, is not rated

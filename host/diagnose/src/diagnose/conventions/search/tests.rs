@@ -12,6 +12,7 @@ fn units_of_one_input_do_not_crowd_out_other_corrections() {
         before_rad: 1.0,
         after_rad: 0.5,
         better: 1.0,
+        own: None,
     };
     let unit = Unit::named("N m", None).unwrap();
     let input = |joint| tried(Correction::Unit(vec![(LogColumn::Input(joint), unit)]));
@@ -88,4 +89,41 @@ fn a_long_chain_is_judged_on_what_it_can_afford() {
     let corrections: Vec<_> = found.iter().map(|fault| &fault.trial.correction).collect();
     let reversed = Correction::Reverse(vec![LogColumn::Position(3)]);
     assert_eq!(corrections, [&reversed]);
+}
+
+/// The motion with a joint's angle and goal written otherwise.
+fn calibrated(motion: &Motion, joint: usize, written: impl Fn(f64) -> f64) -> Motion {
+    let mut motion = motion.clone();
+    let goals = motion.input[joint].iter_mut().flatten();
+    for value in motion.position_rad[joint].iter_mut().chain(goals) {
+        *value = written(*value);
+    }
+    motion
+}
+
+/// Gravity alone tells how a servo that regulates its angle is calibrated.
+#[test]
+fn another_calibration_of_a_servo_is_told_from_both_of_its_columns() {
+    let (model, motion) = long_chain();
+    let found = |written: &dyn Fn(f64) -> f64| {
+        let spoiled = calibrated(&motion, 2, written);
+        let mut found = search(&model, &[spoiled]);
+        assert_eq!(found.len(), 1, "{found:?}");
+        let fault = found.remove(0);
+        assert_eq!(fault.trial.correction.calibrates(), Some(2), "{fault:?}");
+        fault
+    };
+    let reversed = found(&|q| -q).trial.correction;
+    assert!(matches!(reversed, Correction::Reverse(_)), "{reversed:?}");
+
+    let Correction::Unit(columns) = found(&f64::to_degrees).trial.correction else {
+        panic!("no unit");
+    };
+    assert!(columns.iter().all(|(_, unit)| unit.name == "deg"));
+
+    let moved = found(&|q| q + 0.6);
+    let zero = moved.zero.unwrap();
+    assert!((zero.added + 0.6).abs() < 0.01, "{zero:?}");
+    let [low, high] = zero.interval;
+    assert!(low <= -0.6 && -0.6 <= high && high - low < 0.05, "{zero:?}");
 }
