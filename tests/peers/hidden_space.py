@@ -3,16 +3,21 @@
     python hidden_space.py FOLDER --effects coulomb --seed 3
     python hidden_space.py FOLDER --effects delay@2 --seed 1
     python hidden_space.py FOLDER --effects nothing --seed 1
+    python hidden_space.py FOLDER --urdf so101.urdf --convention any --seed 1
 
-The arm has five joints about axes in three directions, the masses of a small desk arm and servos
-that regulate their goal: duty = gain * (goal - reading) up to full duty, torque = stall torque *
-duty - back-EMF. Encoders have 4096 steps a turn; rows come at 50 Hz. Its motions are those of
-people who record such arms: random targets, each reached in some time and held for some. Two
+The arm is a small desk arm of five joints about axes in three directions, or the serial arm of a
+URDF. Its servos regulate their goal: duty = gain * (goal - reading) up to full duty, torque = stall
+torque * duty - back-EMF. Encoders have 4096 steps a turn; rows come at 50 Hz. Its motions are those
+of people who record such arms: random targets, each reached in some time and held for some. Two
 motions of 20 s to learn from, one held out.
 
 Writes arm.urdf, nominal.toml (what the owner believes: viscous friction up to 30 % off and free,
 the hidden effect absent), true.toml, the logs, and truth.json; prints the latter. Equal arguments
 give equal bytes. The folder must not hold files.
+
+With --convention one motion is to learn from and one held out, dry friction is in the file, too, up
+to 30 % off and free, and the log of one joint is written by another convention than the file's,
+readings and goals alike, as a calibration does it: reversed, from another zero, in another unit.
 
 Nothing here is taken from the library whose diagnosis is measured: the rigid body, damping,
 armature and dry friction are MuJoCo's own; drives, delay and encoders are applied outside of it.
@@ -26,11 +31,13 @@ import sys
 
 import mujoco
 import numpy as np
+import space_arm
 
 # At 0.25 ms the step's error of some 3 % made Stribeck friction of dry friction.
 STEP_S = 0.05e-3
+# What a wrong convention does is far larger.
+COARSE_STEP_S = 0.2e-3
 SAMPLE_S = 0.02
-STEPS = round(SAMPLE_S / STEP_S)
 ROWS = 1000
 TICK_RAD = math.tau / 4096
 GAIN_PER_RAD = 5.0
@@ -39,18 +46,7 @@ NO_LOAD_RAD_S = 6.0
 BACK_EMF_NM_S_RAD = STALL_NM / NO_LOAD_RAD_S
 ARMATURE_KG_M2 = 0.02
 VISCOUS_NM_S_RAD = (0.05, 0.25)
-
-# Moments of the two long links, kg m^2.
-LONG = (4e-5, 2e-4, 2e-4)
-# Joint; where it stands in the link before, m; its axis; its range, rad; its link's centre of mass,
-# m, mass, kg, and moments about the axes through it, kg m^2.
-JOINTS = [
-    ("pan", (0, 0, 0.06), (0, 0, 1), (-1.6, 1.6), (0.01, 0, 0.03), 0.12, (6e-5, 7e-5, 5e-5)),
-    ("lift", (0.03, 0, 0.055), (0, 1, 0), (-0.9, 1.1), (0.09, 0.01, 0.02), 0.11, LONG),
-    ("elbow", (0.113, 0, 0.028), (0, 1, 0), (-1.2, 1.2), (0.08, 0, 0.01), 0.1, LONG),
-    ("wrist", (0.135, 0, 0.005), (0, 1, 0), (-1.4, 1.4), (0.04, 0.01, 0), 0.09, (3e-5, 6e-5, 6e-5)),
-    ("roll", (0.061, 0, 0), (1, 0, 0), (-2.4, 2.4), (0.05, 0, 0.015), 0.12, (6e-5, 1e-4, 9e-5)),
-]
+COULOMB_NM = (0.02, 0.1)
 
 
 def within(low, high):
@@ -91,31 +87,14 @@ def drawn(word, seed):
     return {"kind": kind, "joint": at, "parameters": parameters}
 
 
-def urdf():
-    lines = ['<robot name="desk_arm">', '<link name="base"/>']
-    for name, _, _, _, com, mass, (x, y, z) in JOINTS:
-        lines += [
-            f'<link name="{name}_link"><inertial><origin xyz="{com[0]} {com[1]} {com[2]}"/>',
-            f'<mass value="{mass}"/><inertia ixx="{x}" iyy="{y}" izz="{z}" ixy="0" ixz="0"',
-            'iyz="0"/></inertial></link>',
-        ]
-    before = "base"
-    for name, at, axis, (low, high), *_ in JOINTS:
-        lines += [
-            f'<joint name="{name}" type="revolute"><parent link="{before}"/>',
-            f'<child link="{name}_link"/><origin xyz="{at[0]} {at[1]} {at[2]}"/>',
-            f'<axis xyz="{axis[0]} {axis[1]} {axis[2]}"/>',
-            f'<limit lower="{low}" upper="{high}" effort="10" velocity="10"/></joint>',
-        ]
-        before = f"{name}_link"
-    return "\n".join(lines + ["</robot>"]) + "\n"
-
-
 class Arm:
     """The arm with its friction and what is hidden in it."""
 
-    def __init__(self, viscous, effects):
-        self.viscous = viscous
+    def __init__(self, joints, step_s, friction, effects):
+        self.joints = joints
+        self.step_s = step_s
+        self.viscous = friction["viscous"]
+        self.dry = friction.get("coulomb", [0.0] * len(joints))
         self.of = {(e["kind"], e["joint"] - 1): e["parameters"] for e in effects}
 
     def value(self, kind, joint, key, otherwise=0.0):
@@ -124,25 +103,21 @@ class Arm:
     def mjcf(self):
         """Dry friction is a soft constraint: stiff, so that a joint at rest does not creep."""
         head = (
-            f'<mujoco><compiler angle="radian"/><option timestep="{STEP_S}" gravity="0 0 -9.81" '
+            f'<mujoco>{space_arm.COMPILER}<option timestep="{self.step_s}" gravity="0 0 -9.81" '
             'integrator="implicitfast"/><worldbody>'
         )
         body = ""
-        for j, (name, at, axis, _, com, mass, inertia) in enumerate(JOINTS):
-            added = self.value("mass", j, "added_kg")
-            share = (mass + added) / mass
+        for j, joint in enumerate(self.joints):
             armature = ARMATURE_KG_M2 + self.value("armature", j, "inertia_kg_m2")
             damping = self.viscous[j] + (0.0 if self.limit_nm(j) else BACK_EMF_NM_S_RAD)
-            rub = self.value("coulomb", j, "torque_nm")
-            body += (
-                f'<body name="{name}_link" pos="{at[0]} {at[1]} {at[2]}">'
-                f'<inertial pos="{com[0]} {com[1]} {com[2]}" mass="{mass * share}" '
-                f'diaginertia="{inertia[0] * share} {inertia[1] * share} {inertia[2] * share}"/>'
-                f'<joint name="{name}" axis="{axis[0]} {axis[1]} {axis[2]}" damping="{damping}" '
-                f'armature="{armature}" frictionloss="{rub}" '
-                f'solreffriction="{2 * STEP_S} 1" solimpfriction="0.9999 0.9999 0.001"/>'
+            rub = self.dry[j] + self.value("coulomb", j, "torque_nm")
+            body += space_arm.body(
+                joint,
+                self.value("mass", j, "added_kg"),
+                f'damping="{damping}" armature="{armature}" frictionloss="{rub}" '
+                f'solreffriction="{2 * self.step_s} 1" solimpfriction="0.9999 0.9999 0.001"',
             )
-        return head + body + "</body>" * len(JOINTS) + "</worldbody></mujoco>"
+        return head + body + "</body>" * len(self.joints) + "</worldbody></mujoco>"
 
     def limit_nm(self, joint):
         return self.value("torque_saturation", joint, "limit_nm")
@@ -162,18 +137,18 @@ class Arm:
         """Readings at each row, rad, of a motion that begins at rest at its first goals."""
         model = mujoco.MjModel.from_xml_string(self.mjcf())
         data = mujoco.MjData(model)
-        count = len(JOINTS)
-        late = [round(self.value("delay", j, "delay_s") / STEP_S) for j in range(count)]
+        count, steps = len(self.joints), round(SAMPLE_S / self.step_s)
+        late = [round(self.value("delay", j, "delay_s") / self.step_s) for j in range(count)]
         zero = [self.value("encoder_zero", j, "offset_rad") for j in range(count)]
         data.qpos[:] = goals[0] - zero
-        for step in range(round(2.0 / STEP_S)):
+        for step in range(round(2.0 / self.step_s)):
             self.push(data, goals[0])
             mujoco.mj_step(model, data)
         rows = []
-        for step in range(ROWS * STEPS):
-            if step % STEPS == 0:
+        for step in range(ROWS * steps):
+            if step % steps == 0:
                 rows.append(np.round((data.qpos + zero) / TICK_RAD) * TICK_RAD)
-            heard = [goals[max(0, step - late[j]) // STEPS][j] for j in range(count)]
+            heard = [goals[max(0, step - late[j]) // steps][j] for j in range(count)]
             self.push(data, heard)
             mujoco.mj_step(model, data)
         return np.array(rows)
@@ -184,11 +159,11 @@ class Arm:
             data.qfrc_applied[joint] = self.torque_nm(joint, goal, angle, speed)
 
 
-def reaching(rng):
+def reaching(joints, rng):
     """Goals of each row: targets reached on smooth ways, each held for a while."""
-    goals = np.zeros((ROWS, len(JOINTS)))
-    low = np.array([joint[3][0] for joint in JOINTS])
-    high = np.array([joint[3][1] for joint in JOINTS])
+    goals = np.zeros((ROWS, len(joints)))
+    low = np.array([joint.low_rad for joint in joints])
+    high = np.array([joint.high_rad for joint in joints])
     here, row = rng.uniform(0.5 * low, 0.5 * high), 0
     while row < ROWS:
         there = rng.uniform(low, high)
@@ -202,37 +177,63 @@ def reaching(rng):
     return np.round(goals / TICK_RAD) * TICK_RAD
 
 
-def model_toml(viscous, effects):
-    lines = ["[rig]", 'name = "desk arm"', 'robot = "arm.urdf"', ""]
-    for name, *_ in JOINTS:
+def convention(word, joints, seed):
+    """The joint whose log follows another convention, and what is written of an angle there:
+    factor * angle + offset.
+    """
+    rng = stream(seed, 50)
+    kind = str(rng.choice(["sign", "zero", "unit"])) if word == "any" else word
+    drawn = {"kind": kind, "joint": 1 + int(rng.integers(len(joints))), "factor": 1.0, "offset": 0.0}
+    if kind == "sign":
+        drawn["factor"] = -1.0
+    elif kind == "zero":
+        offset_deg = float(rng.uniform(5.0, 90.0)) * float(rng.choice([-1.0, 1.0]))
+        drawn["offset"] = round(math.radians(offset_deg), 4)
+    else:
+        drawn["factor"] = float(rng.choice([180.0 / math.pi, 4096.0 / math.tau]))
+    return drawn
+
+
+# Effects that are part of what the owner's file has, and the value of each.
+OWN = {
+    "armature": "inertia_kg_m2",
+    "viscous": "coefficient_nm_s_rad",
+    "coulomb": "torque_nm",
+}
+
+
+def model_toml(joints, friction, effects):
+    lines = ["[rig]", 'name = "arm in space"', 'robot = "arm.urdf"', ""]
+    for joint in joints:
         lines += [
             "[[joint]]",
-            f'name = "{name}"',
+            f'name = "{joint.name}"',
             'drive = "position"',
             f"gain_per_rad = {GAIN_PER_RAD}",
             f"stall_torque_nm = {STALL_NM}",
             f"no_load_speed_rad_s = {NO_LOAD_RAD_S}",
             "",
         ]
-    own = [("armature", "inertia_kg_m2", [ARMATURE_KG_M2] * len(JOINTS))]
-    own.append(("viscous", "coefficient_nm_s_rad", viscous))
-    for kind, key, values in own:
+    own = {"armature": [ARMATURE_KG_M2] * len(joints), **friction}
+    for kind, values in own.items():
         for joint, value in enumerate(values, start=1):
             more = [e for e in effects if (e["kind"], e["joint"]) == (kind, joint)]
-            value += sum(e["parameters"][key] for e in more)
-            lines += effect_toml(kind, joint, {key: value})
+            value += sum(e["parameters"][OWN[kind]] for e in more)
+            lines += effect_toml(kind, joint, {OWN[kind]: value})
     for effect in effects:
-        if effect["kind"] not in ("armature", "viscous"):
+        if effect["kind"] not in own:
             lines += effect_toml(effect["kind"], effect["joint"], effect["parameters"])
-    free = ", ".join(f'"viscous@{joint + 1}.coefficient_nm_s_rad"' for joint in range(len(JOINTS)))
+    free = ", ".join(
+        f'"{kind}@{joint + 1}.{OWN[kind]}"' for kind in friction for joint in range(len(joints))
+    )
     lines += ["[fit]", f"free = [{free}]", "", "[log]"]
     lines += ['time = { column = "time_s", unit = "s" }', ""]
-    for name, *_ in JOINTS:
+    for joint in joints:
         step = f"resolution_rad = {TICK_RAD:.9f}"
         lines += [
             "[[log.joint]]",
-            f'position = {{ column = "{name}.position", unit = "rad", {step} }}',
-            f'input = {{ column = "{name}.goal", unit = "rad" }}',
+            f'position = {{ column = "{joint.name}.position", unit = "rad", {step} }}',
+            f'input = {{ column = "{joint.name}.goal", unit = "rad" }}',
             "",
         ]
     return "\n".join(lines)
@@ -243,10 +244,10 @@ def effect_toml(kind, joint, parameters):
     return ["[[effect]]", f'kind = "{kind}"', f"joint = {joint}", *values, ""]
 
 
-def csv(goals, angles):
+def csv(joints, goals, angles):
     head = ["time_s"]
-    for name, *_ in JOINTS:
-        head += [f"{name}.position", f"{name}.goal"]
+    for joint in joints:
+        head += [f"{joint.name}.position", f"{joint.name}.goal"]
     lines = [",".join(head)]
     for row in range(ROWS):
         cells = [f"{row * SAMPLE_S:.2f}"]
@@ -256,38 +257,64 @@ def csv(goals, angles):
     return "\n".join(lines) + "\n"
 
 
+def write(args):
+    """The files, and what is true of them."""
+    urdf = args.urdf.read_text() if args.urdf else space_arm.desk_urdf()
+    joints = space_arm.joints(urdf)
+    words = [] if args.effects == "nothing" else args.effects.split(",")
+    effects = [drawn(word, args.seed) for word in words]
+    rng = stream(args.seed, 1)
+    off = {"viscous": VISCOUS_NM_S_RAD}
+    if args.convention:
+        off["coulomb"] = COULOMB_NM
+    true, believed = {}, {}
+    for kind, bounds in off.items():
+        true[kind] = [round(float(rng.uniform(*bounds)), 4) for _ in joints]
+        believed[kind] = [round(own * float(rng.uniform(0.7, 1.3)), 4) for own in true[kind]]
+    arm = Arm(joints, COARSE_STEP_S if args.convention else STEP_S, true, effects)
+
+    written = None
+    if args.convention not in (None, "file"):
+        written = convention(args.convention, joints, args.seed)
+    args.folder.mkdir(parents=True, exist_ok=True)
+    logs = []
+    for number, name in enumerate("ab" if args.convention else "abc"):
+        goals = reaching(joints, stream(args.seed, 2 + number))
+        angles = arm.record(goals)
+        for values in (goals, angles) if written else ():
+            at = written["joint"] - 1
+            values[:, at] = written["factor"] * values[:, at] + written["offset"]
+        (args.folder / f"{name}.csv").write_text(csv(joints, goals, angles))
+        logs.append(f"{name}.csv")
+    (args.folder / "arm.urdf").write_text(urdf)
+    (args.folder / "nominal.toml").write_text(model_toml(joints, believed, []))
+    (args.folder / "true.toml").write_text(model_toml(joints, true, effects))
+    truth = {
+        "seed": args.seed,
+        "effects": effects,
+        "in_library": True,
+        "fit": logs[:-1],
+        "held_out": logs[-1:],
+    }
+    return truth | ({"convention": written} if args.convention else {})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--effects", default="nothing", help="kind[@joint],... or nothing")
+    parser.add_argument("--urdf", type=pathlib.Path, help="the arm; the desk arm without it")
+    parser.add_argument(
+        "--convention",
+        choices=["any", "sign", "zero", "unit", "file"],
+        help="write one joint's log by another convention than the file's; file: by none",
+    )
     parser.add_argument("--seed", type=int, default=1)
     args = parser.parse_args()
 
     if args.folder.is_dir() and any(args.folder.iterdir()):
         sys.exit(f"{args.folder} holds files: name a new folder, nothing is overwritten")
-    words = [] if args.effects == "nothing" else args.effects.split(",")
-    effects = [drawn(word, args.seed) for word in words]
-    rng = stream(args.seed, 1)
-    viscous = [round(float(rng.uniform(*VISCOUS_NM_S_RAD)), 4) for _ in JOINTS]
-    believed = [round(own * float(rng.uniform(0.7, 1.3)), 4) for own in viscous]
-    arm = Arm(viscous, effects)
-
-    args.folder.mkdir(parents=True, exist_ok=True)
-    logs = []
-    for number, name in enumerate("abc"):
-        goals = reaching(stream(args.seed, 2 + number))
-        (args.folder / f"{name}.csv").write_text(csv(goals, arm.record(goals)))
-        logs.append(f"{name}.csv")
-    (args.folder / "arm.urdf").write_text(urdf())
-    (args.folder / "nominal.toml").write_text(model_toml(believed, []))
-    (args.folder / "true.toml").write_text(model_toml(viscous, effects))
-    truth = {
-        "seed": args.seed,
-        "effects": effects,
-        "in_library": True,
-        "fit": logs[:2],
-        "held_out": logs[2:],
-    }
+    truth = write(args)
     text = json.dumps(truth, indent=1)
     (args.folder / "truth.json").write_text(text + "\n")
     print(text)

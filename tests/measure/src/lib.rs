@@ -3,6 +3,7 @@
 pub use handstand_xtask::firmware;
 
 pub mod bench;
+pub mod conventions;
 pub mod discover;
 pub mod experiment;
 pub mod first_hour;

@@ -69,6 +69,8 @@ enum Chore {
     Refit(Words),
     /// Balance virtual robots before and after they were measured
     RobotDemo(Words),
+    /// Measure whether a joint's wrong sign, zero or unit is told of an arm in space
+    Conventions(Words),
     /// Spoil logs in every way, and measure what the check finds
     Spoiled(Words),
     /// Measure whether verdicts on designs agree with other simulations and with `balance`
@@ -105,6 +107,7 @@ fn main() -> ExitCode {
         Chore::BenchLab(words) => ("bench-lab", words),
         Chore::BenchRead(words) => ("bench-read", words),
         Chore::BenchRecord(words) => ("bench-record", words),
+        Chore::Conventions(words) => ("conventions", words),
         Chore::Detection(words) => ("detection", words),
         Chore::Discover(words) => ("discover", words),
         Chore::Hidden(words) => ("hidden", words),

@@ -3,6 +3,7 @@
 use super::case::{Case, Files, TruthFile};
 use handstand_xtask::program::run as succeeds;
 use handstand_xtask::root;
+use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -35,9 +36,34 @@ pub fn install() -> bool {
         && succeeds(&mut pip)
 }
 
+/// Runs a script that writes a rig's files into a folder, and reads what it prints of the truth.
+pub(crate) fn run<Truth: DeserializeOwned>(
+    script: &str,
+    dir: &Path,
+    seed: u64,
+    words: &[&str],
+) -> Result<Truth, String> {
+    let (scripts, folder) = places();
+    let output = Command::new(folder.join("venv/bin/python"))
+        .arg(scripts.join(script))
+        .arg(dir)
+        .args(words)
+        .args(["--seed", &seed.to_string()])
+        // A rig of a few joints gains nothing from threads.
+        .env("OMP_NUM_THREADS", "1")
+        .env("OPENBLAS_NUM_THREADS", "1")
+        .output()
+        .map_err(|error| format!("{script} cannot be run: {error}"))?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        let last = said.lines().last().unwrap_or("no message");
+        return Err(format!("{script}: {last}"));
+    }
+    serde_json::from_slice(&output.stdout).map_err(|error| format!("{script}: {error}"))
+}
+
 /// Runs the script of the case's rig.
 pub(super) fn write(case: &Case, dir: &Path) -> Result<Files, String> {
-    let (scripts, folder) = places();
     let effects = match case.hidden.as_slice() {
         [] => "nothing".to_string(),
         kinds => kinds.join(","),
@@ -48,26 +74,11 @@ pub(super) fn write(case: &Case, dir: &Path) -> Result<Files, String> {
     } else {
         "hidden_mujoco.py"
     };
-    let mut python = Command::new(folder.join("venv/bin/python"));
-    python.arg(scripts.join(script)).arg(dir);
+    let mut words = vec!["--effects", &effects];
     if !in_space {
-        python.args(["--motions", case.motions()]);
+        words.extend(["--motions", case.motions()]);
     }
-    let output = python
-        .args(["--effects", &effects])
-        .args(["--seed", &case.seed.to_string()])
-        // A rig of three joints gains nothing from threads.
-        .env("OMP_NUM_THREADS", "1")
-        .env("OPENBLAS_NUM_THREADS", "1")
-        .output()
-        .map_err(|error| format!("{script} cannot be run: {error}"))?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        let last = said.lines().last().unwrap_or("no message");
-        return Err(format!("{script}: {last}"));
-    }
-    let truth: TruthFile =
-        serde_json::from_slice(&output.stdout).map_err(|error| format!("{script}: {error}"))?;
+    let truth: TruthFile = run(script, dir, case.seed, &words)?;
     let all = |names: &[String]| names.iter().map(|name| dir.join(name)).collect();
     Ok(Files {
         nominal: dir.join("nominal.toml"),

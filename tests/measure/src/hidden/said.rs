@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 /// A value with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SaidValue {
+pub(crate) struct SaidValue {
     pub value: f64,
     pub low: f64,
     pub high: f64,
@@ -14,7 +14,7 @@ pub(super) struct SaidValue {
 
 /// An effect that a result gives.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct SaidEffect {
+pub(crate) struct SaidEffect {
     pub kind: String,
     /// Counted from 1; none when it acts on the whole rig.
     pub joint: Option<usize>,
@@ -24,7 +24,7 @@ pub(super) struct SaidEffect {
 
 /// What a result says.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Said {
+pub(crate) struct Said {
     /// The verdict, in its own word.
     pub verdict: String,
     /// Effects of the best explanation.
@@ -129,7 +129,7 @@ fn set(explanation: &Json) -> Vec<String> {
 }
 
 /// Reads a result.
-pub(super) fn said(json: &Json) -> Said {
+pub(crate) fn said(json: &Json) -> Said {
     let alternatives = json["alternatives"].as_array().into_iter().flatten();
     let fitted = [&json["base"], &json["wrong_values"]];
     Said {

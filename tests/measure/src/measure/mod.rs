@@ -5,6 +5,7 @@ mod bench_lab;
 mod bench_read;
 #[cfg(unix)]
 mod bench_record;
+mod conventions;
 mod detection;
 mod discover;
 mod first_hour;
@@ -61,6 +62,8 @@ enum Chore {
     Refit(refit::Args),
     /// Balance virtual robots before and after they were measured
     RobotDemo(robot_demo::Args),
+    /// Measure whether a joint's wrong sign, zero or unit is told of an arm in space
+    Conventions(conventions::Args),
     /// Spoil logs in every way, and measure what the check finds
     Spoiled(spoiled::Args),
     /// Measure whether verdicts on designs agree with other simulations and with `balance`
@@ -99,6 +102,7 @@ impl Chores {
             Chore::Refit(args) => refit::run(args),
             Chore::RobotDemo(args) => robot_demo::run(args),
             Chore::Spoiled(args) => spoiled::run(args),
+            Chore::Conventions(args) => conventions::run(args),
             Chore::Verdicts(args) => verdicts::run(args),
             Chore::BenchFirmware(args) => bench_firmware::run(args),
             Chore::BenchLab(args) => bench_lab::run(args),

@@ -6,6 +6,7 @@ mod outcome;
 mod rig;
 mod spoiling;
 
+pub(crate) use outcome::said;
 pub use outcome::{Answer, Outcome, judge, unspoiled};
 pub use rig::{Rig, bundled, public, simulated};
 pub use spoiling::{Spoiled, Spoiling, spoilings};

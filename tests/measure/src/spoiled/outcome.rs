@@ -119,7 +119,7 @@ fn leaves_out(spoiling: Spoiling, left_out: &LeaveOut) -> bool {
     }
 }
 
-fn said(
+pub(crate) fn said(
     found: &[handstand::diagnose::conventions::LogFault],
     left_out: &[LeaveOut],
 ) -> Vec<String> {

@@ -205,10 +205,9 @@ impl Spoiling {
             _ => false,
         };
         let offset = |joint: usize| match correction {
-            Correction::Offset(LogColumn::Position(j), offset) if *j == joint => {
-                let column = LogColumn::Position(joint).column(&spoiled.model)?;
-                Some(offset - column.offset)
-            }
+            Correction::Offset(columns, added) => columns
+                .contains(&LogColumn::Position(joint))
+                .then_some(*added),
             _ => None,
         };
         match *self {
