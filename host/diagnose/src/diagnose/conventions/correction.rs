@@ -155,6 +155,12 @@ impl Correction {
         }
     }
 
+    /// Whether it is about the unit of an angle.
+    pub(super) fn reads_an_angle_in_another_unit(&self) -> bool {
+        let is_angle = |(column, _): &(LogColumn, Unit)| matches!(column, LogColumn::Position(_));
+        matches!(self, Correction::Unit(columns) if columns.iter().any(is_angle))
+    }
+
     /// Whether it changes a number that could have any value, not one of a few alternatives.
     pub fn is_continuous(&self) -> bool {
         matches!(self, Correction::Offset(..) | Correction::Shift(..))

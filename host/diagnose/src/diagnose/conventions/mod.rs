@@ -60,7 +60,8 @@ pub fn check(requests: &[LogRequest], model: &Model, file: ModelFile) -> Result<
     disagreements(requests, model, file).map(|(findings, _)| findings)
 }
 
-/// What does not agree, and the model with the units that do: rows are judged as they are meant.
+/// What does not agree, and the model with angles in the units that do: in a wrong one they seem to
+/// wrap, to lie apart from their goals and to move in large steps.
 fn disagreements(
     requests: &[LogRequest],
     model: &Model,
@@ -87,7 +88,7 @@ fn disagreements(
         all.push(findings::finding(&found, &mended, file)?);
         let correction = &found.trial.correction;
         mended = correction.applied(&mended);
-        if matches!(correction, Correction::Unit(_)) {
+        if correction.reads_an_angle_in_another_unit() {
             in_right_units = correction.applied(&in_right_units);
         }
     }

@@ -1,6 +1,9 @@
+use super::super::{ModelFile, findings};
 use super::*;
+use crate::log::{LogRequest, Severity};
 use crate::motion::MotionSource;
 use crate::sim::{Plant, PlantMemory, StartState, predict};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 #[test]
@@ -23,8 +26,8 @@ fn units_of_one_input_do_not_crowd_out_other_corrections() {
     assert_eq!(kept, [input(0), input(0), input(1), reversed]);
 }
 
-/// A chain of six servos that follow goals of their own speeds, as its model says.
-fn long_chain() -> (Model, Motion) {
+/// The file of a chain of six servos.
+fn long_chain_file() -> String {
     let mut text = String::from("[rig]\nname = \"long\"\nangle_zero = \"hanging\"\n");
     for _ in 0..6 {
         text += "[[link]]\nlength_m = 0.1\ncom_m = 0.05\nmass_kg = 0.05\ninertia_kg_m2 = 2e-3\n\
@@ -38,7 +41,12 @@ fn long_chain() -> (Model, Motion) {
              input = {{ column = \"goal{joint}\", unit = \"rad\" }}\n"
         );
     }
-    let model = Model::parse(&text, Path::new("long.toml")).unwrap();
+    text
+}
+
+/// The chain, its servos following goals of their own speeds as its model says.
+fn long_chain() -> (Model, Motion) {
+    let model = Model::parse(&long_chain_file(), Path::new("long.toml")).unwrap();
     let time_s: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k)).collect();
     let goal = |joint: usize| {
         let rate = 1.5 + 0.7 * joint as f64;
@@ -126,4 +134,31 @@ fn another_calibration_of_a_servo_is_told_from_both_of_its_columns() {
     assert!((zero.added + 0.6).abs() < 0.01, "{zero:?}");
     let [low, high] = zero.interval;
     assert!(low <= -0.6 && -0.6 <= high && high - low < 0.05, "{zero:?}");
+}
+
+/// Read in a wrong unit, an angle seems to wrap and to lie far from its goal.
+#[test]
+fn rows_are_judged_in_the_units_that_were_found() {
+    let (model, motion) = long_chain();
+    let spoiled = calibrated(&motion, 2, |q| (q / TAU * 4096.0).round());
+    let mut csv = String::from("t");
+    (1..=6).for_each(|joint| csv += &format!(",q{joint},goal{joint}"));
+    for (row, time_s) in spoiled.time_s.iter().enumerate() {
+        csv += &format!("\n{time_s}");
+        for joint in 0..6 {
+            let goal = spoiled.input[joint].as_ref().unwrap()[row];
+            csv += &format!(",{:.6},{goal:.6}", spoiled.position_rad[joint][row]);
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log.csv");
+    std::fs::write(&log, csv).unwrap();
+    let (path, text) = (Path::new("long.toml"), &long_chain_file());
+    let file = ModelFile { path, text };
+    let found = findings(&[LogRequest::whole(log)], &model, file).unwrap();
+    let refused = found
+        .iter()
+        .filter(|finding| finding.severity == Severity::Refuse);
+    let kinds: Vec<&str> = refused.map(|finding| finding.kind).collect();
+    assert_eq!(kinds, ["unit"], "{found:#?}");
 }
