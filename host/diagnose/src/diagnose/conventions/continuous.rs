@@ -11,7 +11,20 @@ use std::f64::consts::{PI, TAU};
 const ZEROS: usize = 24;
 /// A zero this near to the given one may be a tilted base, a bent link or a calibration, which the
 /// diagnosis finds, rad.
-pub(super) const LEAST_ZERO_RAD: f64 = 0.25;
+const LEAST_ZERO_RAD: f64 = 0.25;
+/// The same of a servo's calibration, rad: a base that leans turns every link, and a bent link is
+/// another zero to whoever uses the arm. Below, where friction holds a servo decides.
+const LEAST_CALIBRATION_RAD: f64 = 0.07;
+
+/// Whether a zero lies so far from the given one that a wrong one is likelier than anything else.
+pub(super) fn is_far(zero: &Correction, added: f64) -> bool {
+    let least = if zero.calibrates().is_some() {
+        LEAST_CALIBRATION_RAD
+    } else {
+        LEAST_ZERO_RAD
+    };
+    added.abs() > least
+}
 /// Shifts tried, in steps of a sample or of this, s, on each side.
 const SHIFT_STEPS: i32 = 6;
 const LEAST_STEP_S: f64 = 0.02;
@@ -52,10 +65,11 @@ fn zero(bench: &CorrectionTrial, columns: &[LogColumn]) -> Option<Correction> {
         return None;
     };
     let off = (added + PI).rem_euclid(TAU) - PI;
-    (off.abs() > LEAST_ZERO_RAD).then_some(best.correction)
+    is_far(&best.correction, off).then_some(best.correction)
 }
 
-fn shift(bench: &CorrectionTrial, quantity: LogColumn) -> Option<Correction> {
+/// The best shift of a column in time, if one lowers the error.
+pub(super) fn shift(bench: &CorrectionTrial, quantity: LogColumn) -> Option<Correction> {
     let given = quantity.column(&bench.model)?.shift_s;
     let samples: usize = bench.motions.iter().map(|m| m.len()).sum();
     let seconds: f64 = bench.motions.iter().map(|m| m.duration_s()).sum();

@@ -18,6 +18,7 @@ mod reread;
 mod search;
 #[cfg(test)]
 mod tests;
+mod threshold;
 mod travel;
 mod trial;
 mod zero;

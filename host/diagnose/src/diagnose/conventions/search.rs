@@ -1,16 +1,17 @@
 //! Looks for the corrections that clearly lower the error, one after another.
 
-use super::continuous::{LEAST_ZERO_RAD, continuous};
+use super::continuous::{continuous, shift};
 use super::correction::{Correction, LogColumn, alternatives, time_units};
 use super::drives::drives;
 use super::leave_out::without_stalled;
 use super::plain_friction::rivals_friction;
 use super::rating::ModelReading;
-use super::travel::{doubts_travel, stands_still, units_of_travel};
+use super::threshold::least;
+use super::travel::units_of_travel;
 use super::trial::{CorrectionTrial, Effort, Trial, scales_torque_by};
 use super::zero::{self, FittedZero};
 use crate::fitting::coarsened;
-use crate::model::{Model, Unit};
+use crate::model::{Column, Model, Unit};
 use crate::motion::{Motion, excerpts};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -228,6 +229,8 @@ fn judged(bench: &CorrectionTrial, corrections: Vec<Correction>) -> Vec<Trial> {
     let (mut off, mut rubbing) = (BTreeMap::new(), BTreeMap::new());
     judged.retain(|trial| beats_a_wrong_value(bench, trial, &mut off));
     judged.retain(|trial| beats_friction(bench, trial, &mut rubbing));
+    judged.retain(|trial| beats_a_delay(bench, trial));
+
     judged
 }
 
@@ -307,83 +310,21 @@ fn beats_friction(
     left.is_none_or(|left| trial.ratio() < BEATS * left)
 }
 
-/// What a correction must do to be believed.
-struct CorrectionThreshold {
-    ratio: f64,
-    better: f64,
-}
-
-/// Share that a correction may leave where it raises the error in rad.
-const MOST_WHERE_LARGER: f64 = 0.15;
-
-impl CorrectionThreshold {
-    fn allows(&self, trial: &Trial) -> bool {
-        // In another unit every error in rad may be larger, but then little of the motion is left.
-        let most = if trial.after_rad > trial.before_rad {
-            MOST_WHERE_LARGER
-        } else {
-            1.0
-        };
-        trial.ratio() < self.ratio && trial.better >= self.better && trial.after < most
-    }
-}
-
-/// What it must do: alternatives without a free number less than zeros and shifts, which
-/// effects of the rig (a tilt, a delay) look like.
-fn least(bench: &CorrectionTrial, correction: &Correction) -> CorrectionThreshold {
-    let strict = CorrectionThreshold {
-        ratio: 0.6,
-        better: 0.75,
+/// Whether an angle that was read earlier than its rows say leaves less than an input that acts
+/// later: of one joint of several the two differ by what joints do to each other, and an input that
+/// acts late is an effect of the drive.
+fn beats_a_delay(bench: &CorrectionTrial, trial: &Trial) -> bool {
+    let Correction::Shift(angle @ LogColumn::Position(joint), shift_s) = trial.correction else {
+        return true;
     };
-    let never = CorrectionThreshold {
-        ratio: 0.0,
-        better: 1.0,
-    };
-    match correction {
-        Correction::Offset(_, added) => {
-            if added.abs() > LEAST_ZERO_RAD {
-                strict
-            } else {
-                never
-            }
-        }
-        // A drive that acts late, whatever delays it, is an effect of the library.
-        Correction::Shift(LogColumn::Input(_), shift_s) if *shift_s > 0.0 => never,
-        Correction::Shift(_, shift_s) => {
-            if shift_s.abs() > 0.008 {
-                strict
-            } else {
-                never
-            }
-        }
-        Correction::Unit(_) if stands_still(bench, correction) => never,
-        Correction::Unit(columns) if scales_little(&bench.model, columns) => {
-            if is_long(&bench.model) { never } else { strict }
-        }
-        // Many turns of an arm are reason enough to doubt a unit.
-        Correction::Unit(columns) if doubts_travel(&bench.motions, columns) => {
-            CorrectionThreshold {
-                ratio: 0.97,
-                better: 0.5,
-            }
-        }
-        _ => CorrectionThreshold {
-            ratio: 0.8,
-            better: 0.7,
-        },
+    let is_earlier = |given: &Column| shift_s < given.shift_s;
+    if !angle.column(&bench.model).is_some_and(is_earlier) {
+        return true;
     }
+    let late = shift(bench, LogColumn::Input(joint));
+    let late = late.and_then(|late| bench.tried(late, Effort::Starts));
+    late.is_none_or(|late| AS_GOOD * trial.ratio() < late.ratio())
 }
-
-/// Whether the new units are nearly the given ones, of 4000 counts a turn and of 4096: a scale of a
-/// few per cent is what wrong friction looks like, too, where it is not fitted.
-fn scales_little(model: &Model, columns: &[(LogColumn, Unit)]) -> bool {
-    columns.iter().all(|(quantity, unit)| {
-        let given = quantity.column(model).map(|column| column.unit.si);
-        given.is_some_and(|given| (unit.si / given - 1.0).abs() < LITTLE_SCALE)
-    })
-}
-
-const LITTLE_SCALE: f64 = 0.1;
 
 /// Whether samples lie so far apart, or so close, that the unit of time must be wrong.
 pub(super) fn is_doubtful_time(model: &Model, motions: &[Motion]) -> bool {

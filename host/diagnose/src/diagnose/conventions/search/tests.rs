@@ -46,7 +46,12 @@ fn long_chain_file() -> String {
 
 /// The chain, its servos following goals of their own speeds as its model says.
 fn long_chain() -> (Model, Motion) {
-    let model = Model::parse(&long_chain_file(), Path::new("long.toml")).unwrap();
+    moved(&long_chain_file())
+}
+
+/// The model of a file of six servos, and a motion of it.
+fn moved(file: &str) -> (Model, Motion) {
+    let model = Model::parse(file, Path::new("long.toml")).unwrap();
     let time_s: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k)).collect();
     let goal = |joint: usize| {
         let rate = 1.5 + 0.7 * joint as f64;
@@ -134,6 +139,15 @@ fn another_calibration_of_a_servo_is_told_from_both_of_its_columns() {
     assert!((zero.added + 0.6).abs() < 0.01, "{zero:?}");
     let [low, high] = zero.interval;
     assert!(low <= -0.6 && -0.6 <= high && high - low < 0.05, "{zero:?}");
+}
+
+/// An angle that was read earlier would look like it.
+#[test]
+fn a_drive_that_acts_late_is_left_to_diagnosis() {
+    let (model, _) = long_chain();
+    let late = "[[effect]]\nkind = \"delay\"\njoint = 3\ndelay_s = 0.05\n";
+    let (_, motion) = moved(&long_chain_file().replace("[log]", &format!("{late}[log]")));
+    assert_eq!(search(&model, &[motion]), []);
 }
 
 /// Read in a wrong unit, an angle seems to wrap and to lie far from its goal.
