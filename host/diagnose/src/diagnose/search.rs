@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 mod partners;
+mod plainest;
 mod results;
 
 pub(super) use results::SearchResults;
@@ -63,7 +64,7 @@ impl Evaluator<'_> {
         found.best = found
             .best
             .take()
-            .map(|best| self.smallest_within(best, &found.sizes));
+            .map(|best| self.plainest(self.smallest_within(best, &found.sizes)));
         found.at = None;
     }
 

@@ -117,7 +117,7 @@ impl Evaluator<'_> {
 }
 
 /// Whether a candidate acts where another does, with fewer values.
-fn is_plainer(candidate: Candidate, than: Candidate) -> bool {
+pub(super) fn is_plainer(candidate: Candidate, than: Candidate) -> bool {
     let site = |candidate: Candidate| candidate.effect.info().site;
     candidate.joint == than.joint
         && site(candidate) == site(than)
