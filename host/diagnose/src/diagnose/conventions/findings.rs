@@ -59,16 +59,22 @@ enum Doubt {
     Guessed,
     /// It is far from the log with the correction, too.
     FarOff,
+    /// It shows in one joint, and all together hardly gain.
+    OneJoint,
 }
 
 /// A share of the motion that a model near a log leaves unexplained at most.
 const NEAR: f64 = 0.3;
+
+/// All joints hardly gain where more than this share of the error stays.
+const HARDLY: f64 = 0.8;
 
 impl Doubt {
     fn words(self) -> &'static str {
         match self {
             Doubt::Guessed => "the model's values are guesses, which cannot tell",
             Doubt::FarOff => "the model is far from the log either way, so this is a hint",
+            Doubt::OneJoint => "the joints together hardly gain, so this is a hint",
         }
     }
 }
@@ -81,6 +87,7 @@ fn doubt(trial: &Trial, model: &Model) -> Option<Doubt> {
         Correction::Unit(columns) if columns.iter().any(|(q, _)| *q == LogColumn::Time) => None,
         _ if model.guessed => Some(Doubt::Guessed),
         _ if trial.after > NEAR => Some(Doubt::FarOff),
+        _ if trial.own.is_some() && trial.after > HARDLY * trial.before => Some(Doubt::OneJoint),
         _ => None,
     }
 }

@@ -205,33 +205,55 @@ fn judged(bench: &CorrectionTrial, corrections: Vec<Correction>) -> Vec<Trial> {
         .collect();
     let merit = |trial: &Trial| trial.ratio() * likelier(&bench.model, trial);
     screened.sort_by(|a, b| merit(a).total_cmp(&merit(b)));
-    let judged = most_promising(screened).into_par_iter();
-    let judged = judged.filter_map(|trial| {
-        // The file's free values are a start: each reading is judged with those that suit it.
-        let fitted = if is_long {
-            Effort::Starts
-        } else {
-            Effort::Values
+    let refitted = most_promising(screened)
+        .into_par_iter()
+        .filter_map(|trial| {
+            // The file's free values are a start: each reading is judged with those that suit it.
+            let fitted = if is_long {
+                Effort::Starts
+            } else {
+                Effort::Values
+            };
+            bench.tried(trial.correction, fitted)
+        });
+    let refitted: Vec<Trial> = refitted.collect();
+    let is_allowed = |trial: &&Trial| {
+        let is_another_drive = matches!(trial.correction, Correction::Drive(..));
+        let suits = trial.ratio() < MOST_OF_ANOTHER_DRIVE || trial.after < LITTLE;
+        let does_as_given = || {
+            let given = bench.tried(trial.correction.clone(), Effort::Starts);
+            given.is_some_and(|given| given.ratio() < 1.0)
         };
-        let refitted = bench.tried(trial.correction.clone(), fitted)?;
-        let is_another_drive = matches!(refitted.correction, Correction::Drive(..));
-        let suits = refitted.ratio() < MOST_OF_ANOTHER_DRIVE || refitted.after < LITTLE;
-        if !least(bench, &refitted.correction).allows(&refitted) || is_another_drive && !suits {
-            return None;
-        }
-        let does_as_given = is_long
-            || bench
-                .tried(trial.correction, Effort::Starts)
-                .is_some_and(|given| given.ratio() < 1.0);
-        does_as_given.then_some(refitted)
-    });
-    let mut judged: Vec<Trial> = judged.collect();
+        least(bench, &trial.correction).allows(trial)
+            && (!is_another_drive || suits)
+            && (is_long || does_as_given())
+    };
+    let allowed = refitted.par_iter().filter(is_allowed).cloned();
+    let mut judged: Vec<Trial> = allowed.collect();
     let (mut off, mut rubbing) = (BTreeMap::new(), BTreeMap::new());
     judged.retain(|trial| beats_a_wrong_value(bench, trial, &mut off));
     judged.retain(|trial| beats_friction(bench, trial, &mut rubbing));
     judged.retain(|trial| beats_a_delay(bench, trial));
-
+    let also = mirrored(&judged, &refitted);
+    judged.extend(also);
     judged
+}
+
+/// Other calibrations, of the trials, that leave less in all joints together than one which shows
+/// in its own joint alone: mirrored at its base, an arm moves as if its last joint were reversed.
+fn mirrored(judged: &[Trial], refitted: &[Trial]) -> Vec<Trial> {
+    let alone = judged.iter().filter(|trial| trial.own.is_some());
+    let Some(most) = alone.map(|trial| trial.after).max_by(f64::total_cmp) else {
+        return Vec::new();
+    };
+    let others = refitted.iter().filter(|other| {
+        let calibrates = other.correction.calibrates().is_some();
+        calibrates && !other.correction.is_continuous() && other.after < most
+    });
+    others
+        .filter(|other| !judged.contains(other))
+        .cloned()
+        .collect()
 }
 
 /// The first of the sorted trials, of units of the same columns no more than a few.

@@ -27,8 +27,9 @@ pub struct Trial {
     pub after_rad: f64,
     /// Share of the windows that the correction makes better, of those it changes.
     pub better: f64,
-    /// Where the correction calibrates one joint and all joints together do not suffer: the share
-    /// of that joint's motion before and after, which the others' would drown.
+    /// Where the correction calibrates one joint, it shows most in that joint, and all joints
+    /// together do not suffer: the share of that joint's motion before and after, which the others'
+    /// would drown.
     pub own: Option<[f64; 2]>,
 }
 
@@ -41,9 +42,12 @@ impl Trial {
 
     fn new(correction: Correction, before: &Rating, after: &Rating) -> Option<Trial> {
         let shares = [before.share()?, after.share()?];
+        let ratio = |[before, after]: [f64; 2]| after / before.max(1e-12);
         let calibrated = correction.calibrates().filter(|_| shares[1] <= shares[0]);
-        let own =
-            calibrated.and_then(|joint| Some([before.share_of(joint)?, after.share_of(joint)?]));
+        let own = calibrated.and_then(|joint| {
+            let own = [before.share_of(joint)?, after.share_of(joint)?];
+            (ratio(own) < ratio(shares)).then_some(own)
+        });
         Some(Trial {
             before: shares[0],
             after: shares[1],
