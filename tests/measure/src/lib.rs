@@ -8,6 +8,7 @@ pub mod discover;
 pub mod experiment;
 pub mod first_hour;
 pub mod hidden;
+pub mod jobs;
 #[cfg(unix)]
 pub mod kills;
 pub mod measured;

@@ -31,10 +31,8 @@ pub use text::{line, misses, tables};
 pub use trial::try_case;
 pub use within::{Timed, Within, try_within};
 
-use rayon::ThreadPoolBuilder;
+use crate::jobs::try_each;
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Tries all cases, `jobs` at a time, sharing `threads` threads out among them; outcomes in the
 /// order of the cases, whatever these numbers are, and the cases that could not be made, with why.
@@ -46,43 +44,15 @@ pub fn try_all(
     [jobs, threads]: [usize; 2],
     heard: &(dyn Fn(&Outcome) + Sync),
 ) -> (Vec<Outcome>, Vec<(Case, String)>) {
-    let next = AtomicUsize::new(0);
-    let found: Mutex<Vec<(usize, Result<Outcome, String>)>> = Mutex::new(Vec::new());
-    let each = (threads / jobs.max(1)).max(1);
-    std::thread::scope(|scope| {
-        for _ in 0..jobs.max(1) {
-            scope.spawn(|| {
-                // A pool of its own: diagnoses that share one steal each other's work, and their
-                // times mean nothing.
-                let pool = ThreadPoolBuilder::new().num_threads(each).build().ok();
-                loop {
-                    let index = next.fetch_add(1, Ordering::SeqCst);
-                    let Some(case) = cases.get(index) else {
-                        break;
-                    };
-                    let outcome = match &pool {
-                        Some(pool) => pool.install(|| try_case(case, rigs)),
-                        None => try_case(case, rigs),
-                    };
-                    if let Ok(outcome) = &outcome {
-                        heard(outcome);
-                    }
-                    if let Ok(mut found) = found.lock() {
-                        found.push((index, outcome));
-                    }
-                }
-            });
-        }
+    let found = try_each(cases, [jobs, threads], &|case| {
+        let outcome = try_case(case, rigs);
+        outcome.inspect(heard)
     });
-    let mut found = found
-        .into_inner()
-        .unwrap_or_else(|broken| broken.into_inner());
-    found.sort_by_key(|(index, _)| *index);
     let (mut outcomes, mut failed) = (Vec::new(), Vec::new());
-    for (index, outcome) in found {
+    for (case, outcome) in cases.iter().zip(found) {
         match outcome {
             Ok(outcome) => outcomes.push(outcome),
-            Err(why) => failed.push((cases[index].clone(), why)),
+            Err(why) => failed.push((case.clone(), why)),
         }
     }
     (outcomes, failed)

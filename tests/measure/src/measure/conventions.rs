@@ -9,9 +9,9 @@ use comfy_table::Table;
 use handstand::output::table::plain_table;
 use handstand_measure::conventions::{ConventionCase, ConventionOutcome, try_convention};
 use handstand_measure::hidden::install_mujoco;
+use handstand_measure::jobs::try_each;
 use handstand_measure::measured::Measured;
 use handstand_measure::spoiled::Answer;
-use rayon::prelude::*;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -70,8 +70,9 @@ fn outcomes(args: &Args, urdf: &Path) -> (Vec<ConventionOutcome>, usize) {
     let cases: Vec<ConventionCase> = cases(args.seeds, true)
         .chain(cases(args.alarms, false))
         .collect();
-    // A simulation by MuJoCo keeps one core busy, and a check rarely both.
-    let tried = cases.par_iter().map(|case| {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    // One thread each: a simulation by MuJoCo has no more, and a check hardly gains by two.
+    let tried = try_each(&cases, [threads, threads], &|case| {
         let tried = try_convention(*case, urdf);
         match &tried {
             Ok(outcome) => eprintln!("{}", line(outcome)),
@@ -79,7 +80,6 @@ fn outcomes(args: &Args, urdf: &Path) -> (Vec<ConventionOutcome>, usize) {
         }
         tried.ok()
     });
-    let tried: Vec<Option<ConventionOutcome>> = tried.collect();
     let failed = tried.iter().filter(|outcome| outcome.is_none()).count();
     (tried.into_iter().flatten().collect(), failed)
 }
@@ -142,7 +142,7 @@ fn measured(spoiled: &[&ConventionOutcome], as_filed: &[&ConventionOutcome]) -> 
              times."
         ))
         .line(format!(
-            "A check takes {:.1} s on the mean, several at a time. What cannot be seen leaves the model's error within \
+            "A check takes {:.1} s of one thread on the mean. What cannot be seen leaves the model's error within \
              a quarter: zero and sign of a joint about a vertical axis, or of a light jaw under \
              friction.",
             seconds / all().count().max(1) as f64,
