@@ -3,6 +3,7 @@
 //! What to do next comes as command lines in which [`MODEL`], [`LOGS`] and [`HELD_OUT`] stand for
 //! the files.
 
+mod partial;
 mod values;
 
 pub use values::change;
@@ -198,9 +199,7 @@ fn summary(diagnosis: &Diagnosis) -> Vec<String> {
     lines.extend(same_in_other_words(diagnosis));
     lines.extend(inseparable(diagnosis));
     if diagnosis.verdict == Verdict::Unexplained && !diagnosis.effects.is_empty() {
-        lines.push(
-            "What comes closest is not the whole of it: do not take it for the cause.".into(),
-        );
+        lines.push(partial::worth(diagnosis));
     }
     // The values of one of several explanations would be taken for an answer.
     let told = match diagnosis.verdict {
