@@ -77,6 +77,11 @@ pub const PAGES: &[MeasuredPage] = &[
         }),
     ),
     page(
+        "conventions",
+        Cost::Dear("an hour, after 60 MB"),
+        Sample::Nothing("its rows count the answers of all arms"),
+    ),
+    page(
         "detection",
         Cost::Dear("some two hours"),
         Sample::Longer(
