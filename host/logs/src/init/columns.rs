@@ -9,7 +9,7 @@ use super::log_guess::{ColumnGuess, JointGuess, LogGuess};
 use super::name::{NameGuess, Role, is_joint_state, name_guess};
 use super::segment::stepping_segment;
 use super::unused::{say_file, say_unused};
-use super::values::{angle_unit, duty_unit, median, range, speed_fit};
+use super::values::{angle_unit, duty_unit, median, range, speed_fit, stays_by};
 use crate::error::{Error, Place, Result};
 use crate::model::Unit;
 use crate::output::shortened;
@@ -318,14 +318,25 @@ impl GuessReader<'_> {
                 let values = &self.log.columns[index];
                 // What is constant but not 0 drives all the same, as a topic that is sent once.
                 let idle = *drive != "position" && range(values) == Some((0.0, 0.0));
-                (!idle && self.is_plain(index, what, &[], None, said)).then_some((index, *drive))
+                let is_open = *role == Role::Effort && self.names[index].unit.is_none();
+                let drive = if is_open && position.is_some() && self.actions_are_goals() {
+                    "position"
+                } else {
+                    *drive
+                };
+                (!idle && self.is_plain(index, what, &[], None, said)).then_some((index, drive))
             });
         let Some((index, drive)) = found else {
             return ("passive", None);
         };
         let values = &self.log.columns[index];
+        let follows = self.names[index].role == Some(Role::Effort);
         let like = position.map(|column| (column.unit, column.scale));
         let (unit, why) = match drive {
+            "position" if follows => (
+                like.unwrap_or_else(|| angle_unit(values)),
+                "a goal in the angle's unit: angles stay by theirs",
+            ),
             "position" => (
                 like.unwrap_or_else(|| angle_unit(values)),
                 "the angle's unit",
@@ -338,6 +349,22 @@ impl GuessReader<'_> {
             _ => (("N m", None), "a guess: nothing tells"),
         };
         (drive, Some(self.with_unit(index, what, unit, why, said)))
+    }
+
+    /// Whether inputs whose names tell neither unit nor kind of drive are goals: most angles stay by
+    /// theirs, as they are written. One program writes all its inputs alike, and a joint that
+    /// lags stays by none. Where the user knows the drive, it is what he says.
+    fn actions_are_goals(&self) -> bool {
+        let stay = self.names.iter().enumerate().filter_map(|(index, name)| {
+            let is_open = name.role == Some(Role::Effort) && name.unit.is_none();
+            let angle = self
+                .of_joint(&name.joint, Role::Position)
+                .filter(|_| is_open)?;
+            Some(stays_by(&self.log.columns[angle], &self.log.columns[index]))
+        });
+        let stay: Vec<bool> = stay.collect();
+        let goals = stay.iter().filter(|stays| **stays).count();
+        self.drive.is_none() && 2 * goals > stay.len()
     }
 
     fn supply(&self, index: usize, said: &mut Vec<Guess>) -> ColumnGuess {

@@ -149,6 +149,49 @@ fn drives_come_from_their_inputs() {
     assert_eq!(chosen(Some("passive")), "passive");
 }
 
+/// Data sets of arms call goals actions, and write both in degrees.
+#[test]
+fn what_an_angle_stays_by_is_its_goal() {
+    let degrees: [(&str, TestCurve); 3] = [
+        ("t", |t| t),
+        ("elbow.pos", |t| swing(t).to_degrees()),
+        ("elbow.action", |t| swing(t + 0.04).to_degrees()),
+    ];
+    let (draft, model) = draft(&degrees);
+    assert_eq!(model.joints[0].drive.name(), "position");
+    let goal = model.log.joints[0].input.as_ref().unwrap();
+    assert_eq!(goal.columns()[0].unit.name, "deg");
+    assert!(draft.toml().unwrap().contains("elbow.action"));
+
+    let torques = log(&[degrees[0], degrees[1], ("elbow.action", |t| 3.0 * t.sin())]);
+    let drive = |log: &RawLog, known| {
+        Draft::of(log, "a.csv", known).unwrap().plan.links[0]
+            .drive
+            .clone()
+    };
+    assert_eq!(drive(&torques, None), "torque");
+    // One of three joints hardly moves by its goal.
+    let names = [
+        "a.pos", "a.action", "b.pos", "b.action", "c.pos", "c.action",
+    ];
+    let curves = [degrees[1].1, degrees[2].1].repeat(3);
+    let mut arm = log(&[degrees[0]]);
+    for (name, curve) in names.into_iter().zip(curves) {
+        arm.names.push(name.to_string());
+        arm.columns
+            .push((0..SAMPLES).map(|k| curve(0.01 * k as f64)).collect());
+        arm.iso.push(false);
+        arm.words.push(None);
+    }
+    arm.columns[6].iter_mut().for_each(|goal| *goal = -*goal);
+    let links = Draft::of(&arm, "a.csv", None).unwrap().plan.links;
+    assert!(
+        links.iter().all(|link| link.drive == "position"),
+        "{links:?}"
+    );
+    assert_eq!(drive(&log(&degrees), Some("torque")), "torque");
+}
+
 #[test]
 fn several_joints_and_conventions() {
     let (draft, model) = draft(&[

@@ -25,6 +25,25 @@ pub fn median(values: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
+/// An angle stays by a goal that it is nearer to than this share of its own spread.
+const STAYS_BY: f64 = 0.4;
+
+/// Whether an angle stays by what may be its goal, as a servo that regulates it makes it: their
+/// difference is small beside how far the angle moves (root mean squares).
+pub fn stays_by(angle: &[f64], goal: &[f64]) -> bool {
+    let pairs = || {
+        angle
+            .iter()
+            .zip(goal)
+            .filter(|(a, g)| a.is_finite() && g.is_finite())
+    };
+    let count = pairs().count().max(1) as f64;
+    let mean = pairs().map(|(angle, _)| angle).sum::<f64>() / count;
+    let spread: f64 = pairs().map(|(angle, _)| (angle - mean).powi(2)).sum();
+    let apart: f64 = pairs().map(|(angle, goal)| (angle - goal).powi(2)).sum();
+    apart < STAYS_BY.powi(2) * spread
+}
+
 /// The unit of a time whose name says none, from the middle step between rows.
 pub fn time_unit(values: &[f64]) -> &'static str {
     let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
