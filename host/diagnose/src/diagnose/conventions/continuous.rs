@@ -1,8 +1,10 @@
 //! Corrections with a free number: a zero that lies elsewhere, a column that is shifted in time.
 
 use super::correction::{Correction, LogColumn, is_regulated};
+use super::search::is_long;
 use super::trial::{CorrectionTrial, Effort, Trial};
 use crate::log::LEAST_ROWS;
+use crate::model::Model;
 use crate::motion::Motion;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -12,24 +14,25 @@ const ZEROS: usize = 24;
 /// A zero this near to the given one may be a tilted base, a bent link or a calibration, which the
 /// diagnosis finds, rad.
 const LEAST_ZERO_RAD: f64 = 0.25;
-/// The same of a servo's calibration, rad: a base that leans turns every link, and a bent link is
-/// another zero to whoever uses the arm. Below, where friction holds a servo decides.
+/// The same of a servo within an arm of many joints, rad: a base that leans turns every link, and a
+/// bent link is another zero to whoever uses the arm. Below, where friction holds a servo decides.
 const LEAST_CALIBRATION_RAD: f64 = 0.07;
+/// Shifts tried, in steps of a sample or of this, s, on each side.
+const SHIFT_STEPS: i32 = 6;
+const LEAST_STEP_S: f64 = 0.02;
+/// Steps of a refinement, each of which leaves 0.62 of the interval.
+const REFINEMENTS: usize = 7;
 
 /// Whether a zero lies so far from the given one that a wrong one is likelier than anything else.
-pub(super) fn is_far(zero: &Correction, added: f64) -> bool {
-    let least = if zero.calibrates().is_some() {
+pub(super) fn is_far(model: &Model, zero: &Correction, added: f64) -> bool {
+    let is_within = zero.calibrates().is_some_and(|joint| joint > 0);
+    let least = if is_within && is_long(model) {
         LEAST_CALIBRATION_RAD
     } else {
         LEAST_ZERO_RAD
     };
     added.abs() > least
 }
-/// Shifts tried, in steps of a sample or of this, s, on each side.
-const SHIFT_STEPS: i32 = 6;
-const LEAST_STEP_S: f64 = 0.02;
-/// Steps of a refinement, each of which leaves 0.62 of the interval.
-const REFINEMENTS: usize = 7;
 
 /// The best zero of each joint's angle, and the best shift of each column against the others.
 pub(super) fn continuous(bench: &CorrectionTrial) -> Vec<Correction> {
@@ -65,7 +68,7 @@ fn zero(bench: &CorrectionTrial, columns: &[LogColumn]) -> Option<Correction> {
         return None;
     };
     let off = (added + PI).rem_euclid(TAU) - PI;
-    is_far(&best.correction, off).then_some(best.correction)
+    is_far(&bench.model, &best.correction, off).then_some(best.correction)
 }
 
 /// The best shift of a column in time, if one lowers the error.

@@ -43,7 +43,7 @@ pub(super) fn least(bench: &CorrectionTrial, correction: &Correction) -> Correct
     };
     match correction {
         Correction::Offset(_, added) => {
-            if is_far(correction, *added) {
+            if is_far(&bench.model, correction, *added) {
                 strict
             } else {
                 never
