@@ -234,26 +234,24 @@ fn judged(bench: &CorrectionTrial, corrections: Vec<Correction>) -> Vec<Trial> {
     judged.retain(|trial| beats_a_wrong_value(bench, trial, &mut off));
     judged.retain(|trial| beats_friction(bench, trial, &mut rubbing));
     judged.retain(|trial| beats_a_delay(bench, trial));
-    let also = mirrored(&judged, &refitted);
+    let also = better_calibrations(&judged, &refitted);
     judged.extend(also);
     judged
 }
 
 /// Other calibrations, of the trials, that leave less in all joints together than one which shows
-/// in its own joint alone: mirrored at its base, an arm moves as if its last joint were reversed.
-fn mirrored(judged: &[Trial], refitted: &[Trial]) -> Vec<Trial> {
+/// in its own joint alone: mirrored at its base, an arm moves as if its last joint were reversed,
+/// and what one servo's zero does another's may do in part.
+fn better_calibrations(judged: &[Trial], refitted: &[Trial]) -> Vec<Trial> {
     let alone = judged.iter().filter(|trial| trial.own.is_some());
     let Some(most) = alone.map(|trial| trial.after).max_by(f64::total_cmp) else {
         return Vec::new();
     };
     let others = refitted.iter().filter(|other| {
         let calibrates = other.correction.calibrates().is_some();
-        calibrates && !other.correction.is_continuous() && other.after < most
+        calibrates && other.after < most && !judged.contains(other)
     });
-    others
-        .filter(|other| !judged.contains(other))
-        .cloned()
-        .collect()
+    others.cloned().collect()
 }
 
 /// The first of the sorted trials, of units of the same columns no more than a few.
