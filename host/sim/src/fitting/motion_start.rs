@@ -49,6 +49,11 @@ impl WindowJacobian {
         all
     }
 
+    /// Unknowns of the start, the motion's among them.
+    pub fn starts(&self) -> usize {
+        self.window_start.ncols()
+    }
+
     /// Takes what is known of the start beforehand, and where it lies at an edge.
     pub fn know_start(
         &mut self,

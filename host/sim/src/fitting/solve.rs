@@ -130,7 +130,10 @@ impl Fit {
         // A sensor that trails makes the start's acceleration matter; some effects have unknowns of
         // their own.
         let alike = hides_alike && self.model.trails() == model.trails();
-        if alike && !self.jacobian.is_empty() {
+        // What a window's start hides hangs on values, too, which the fit has moved.
+        let mut windows = self.jacobian.iter().zip(&run.fit.window_starts);
+        let is_sized = windows.all(|(known, own)| known.starts() == own.unknowns.len());
+        if alike && is_sized && !self.jacobian.is_empty() {
             run.fit.jacobian = run.extended(&self.jacobian);
         }
         run.run(options)
