@@ -64,7 +64,11 @@ impl Evaluator<'_> {
         found.best = found
             .best
             .take()
-            .map(|best| self.plainest(self.smallest_within(best, &found.sizes)));
+            .map(|best| self.smallest_within(best, &found.sizes));
+        // The best so far stands where this is ended.
+        if let Some(best) = found.best.clone() {
+            found.best = Some(self.plainest(best));
+        }
         found.at = None;
     }
 

@@ -351,8 +351,8 @@ impl GuessReader<'_> {
         (drive, Some(self.with_unit(index, what, unit, why, said)))
     }
 
-    /// Whether inputs whose names tell neither unit nor kind of drive are goals: most angles stay by
-    /// theirs, as they are written. One program writes all its inputs alike, and a joint that
+    /// Whether inputs whose names tell neither unit nor kind of drive are goals: most angles stay
+    /// by theirs, as they are written. One program writes all its inputs alike, and a joint that
     /// lags stays by none. Where the user knows the drive, it is what he says.
     fn actions_are_goals(&self) -> bool {
         let stay = self.names.iter().enumerate().filter_map(|(index, name)| {

@@ -142,8 +142,8 @@ fn measured(spoiled: &[&ConventionOutcome], as_filed: &[&ConventionOutcome]) -> 
              times."
         ))
         .line(format!(
-            "A check takes {:.1} s of one thread on the mean. What cannot be seen leaves the model's error within \
-             a quarter: zero and sign of a joint about a vertical axis, or of a light jaw under \
+            "A check takes {:.1} s of one thread on the mean. What cannot be seen leaves the \
+             model's error within a quarter: zero and sign of a joint about a vertical axis, or of a light jaw under \
              friction.",
             seconds / all().count().max(1) as f64,
         ))

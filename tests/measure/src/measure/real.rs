@@ -137,8 +137,8 @@ const RIGS: &[Rig] = &[
         held_out: &["emps/DATA_EMPS.mat:12420-24840"],
         expected: "viscous 203.5, coulomb 20.39, offset 3.165",
         why: Some(
-            "the publishers' three are there with their values; the encoder tells 1 um, and in windows of 4 s their own \
-             model leaves 2.16 mm, too (compare --horizon 4)",
+            "the publishers' three are there with their values; the encoder tells 1 um, and in \
+             windows of 4 s their own model leaves 2.16 mm, too (compare --horizon 4)",
         ),
     },
 ];

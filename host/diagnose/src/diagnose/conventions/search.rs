@@ -169,7 +169,7 @@ fn plausible_time(model: &Model, motions: &[Motion]) -> Vec<Trial> {
         return clear;
     }
     // Friction that is off hides a zero of a regulated joint. Of a long chain values are not
-    // fitted anew for each correction, but once.
+    // fitted for each correction, but once.
     let (_, fitted) = few.fitted(Effort::Values);
     clear_corrections(&coarsened(&fitted, &few.data), motions, &few.data.motions)
 }

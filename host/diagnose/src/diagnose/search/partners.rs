@@ -56,21 +56,7 @@ impl Evaluator<'_> {
             return Vec::new();
         }
         let leaving = (0..whole.set.len()).into_par_iter();
-        let found = leaving.flat_map_iter(|leaving| {
-            let out = whole.set[leaving];
-            let rest = whole.without(leaving, &self.base, &self.search, LOOK);
-            let firsts = self.changes.iter().filter_map(|changes| changes.first());
-            let plainer = firsts.filter(|change| {
-                is_plainer(change.candidate, out) && self.is_new(&rest, change.candidate, tried)
-            });
-            let residual = ProjectedResidual::new(&rest.search);
-            let looked = plainer.filter_map(|like| {
-                let changes = changes_like(&rest.search, like, &self.search);
-                let guess = residual.guesses(&changes).into_iter().next()?;
-                Some(self.look(&rest, &guess))
-            });
-            looked.collect::<Vec<_>>()
-        });
+        let found = leaving.flat_map_iter(|leaving| self.with_plainer(whole, leaving, tried));
         found.collect()
     }
 
@@ -114,12 +100,4 @@ impl Evaluator<'_> {
         hypotheses.extend(plainer);
         self.evaluated(self.successive_halving(hypotheses))
     }
-}
-
-/// Whether a candidate acts where another does, with fewer values.
-pub(super) fn is_plainer(candidate: Candidate, than: Candidate) -> bool {
-    let site = |candidate: Candidate| candidate.effect.info().site;
-    candidate.joint == than.joint
-        && site(candidate) == site(than)
-        && candidate.parameters().len() < than.parameters().len()
 }

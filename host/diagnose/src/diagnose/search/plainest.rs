@@ -3,7 +3,6 @@
 use super::super::budget::{FINISH, LOOK};
 use super::super::evaluator::Evaluator;
 use super::super::hypothesis::Hypothesis;
-use super::partners::is_plainer;
 use crate::fitting::{
     Candidate, FitOptions, FitProblem, ProjectedResidual, changes_like, intervals,
 };
@@ -25,7 +24,7 @@ impl Evaluator<'_> {
         let vague = vague_effects(whole, &self.training);
         let mut found: Vec<Hypothesis> = vague
             .into_par_iter()
-            .flat_map_iter(|leaving| self.with_plainer(whole, leaving))
+            .flat_map_iter(|leaving| self.with_plainer(whole, leaving, &[]))
             .collect();
         found.par_iter_mut().for_each(|set| {
             set.resume(&self.search, FitOptions::iterations(FINISH));
@@ -37,17 +36,21 @@ impl Evaluator<'_> {
         found.into_iter().min_by(Hypothesis::by_error)
     }
 
-    /// A short look at the set with one effect replaced by each plainer one that acts there.
-    fn with_plainer(&self, whole: &Hypothesis, leaving: usize) -> Vec<Hypothesis> {
+    /// A short look at the set with one effect replaced by each plainer one that acts there, where
+    /// that makes a set that was not tried yet.
+    pub(super) fn with_plainer(
+        &self,
+        whole: &Hypothesis,
+        leaving: usize,
+        tried: &[Hypothesis],
+    ) -> Vec<Hypothesis> {
         let out = whole.set[leaving];
         let rest = whole.without(leaving, &self.base, &self.search, LOOK);
-        let fits = |candidate: Candidate| {
-            let mut kept = rest.set.iter();
-            is_plainer(candidate, out) && kept.all(|kept| !kept.overlaps(candidate, &self.start))
-        };
-        let residual = ProjectedResidual::new(&rest.search);
         let firsts = self.changes.iter().filter_map(|changes| changes.first());
-        let plainer = firsts.filter(|change| fits(change.candidate));
+        let plainer = firsts.filter(|change| {
+            is_plainer(change.candidate, out) && self.is_new(&rest, change.candidate, tried)
+        });
+        let residual = ProjectedResidual::new(&rest.search);
         let looked = plainer.filter_map(|like| {
             let changes = changes_like(&rest.search, like, &self.search);
             let guess = residual.guesses(&changes).into_iter().next()?;
@@ -55,6 +58,14 @@ impl Evaluator<'_> {
         });
         looked.collect()
     }
+}
+
+/// Whether a candidate acts where another does, with fewer values.
+fn is_plainer(candidate: Candidate, than: Candidate) -> bool {
+    let site = |candidate: Candidate| candidate.effect.info().site;
+    candidate.joint == than.joint
+        && site(candidate) == site(than)
+        && candidate.parameters().len() < than.parameters().len()
 }
 
 /// The places in a set of effects of several values of which one is not determined: its interval
