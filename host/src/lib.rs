@@ -5,8 +5,9 @@
 //! ..), for those who need no more. `ARCHITECTURE.md` says which part knows what.
 
 pub use handstand_challenge as challenge;
-pub use handstand_control::{study, synth, sysid};
-pub use handstand_diagnose::{diagnose, discover, experiment, first_model};
+pub use handstand_control::{synth, sysid};
+pub use handstand_diagnose::{diagnose, discover, first_model};
+pub use handstand_experiment as experiment;
 #[cfg(feature = "lab")]
 pub use handstand_lab as lab;
 pub use handstand_link as link;
@@ -21,3 +22,4 @@ pub use handstand_robot::deploy;
 #[cfg(feature = "virtual-cm5")]
 pub use handstand_robot::robot_demo;
 pub use handstand_sim::{compare, fitting, sim};
+pub use handstand_study as study;

@@ -1,7 +1,6 @@
-//! Gains that balance a robot, from its model to fixed-point tables; what they are robust to; and
-//! servos identified as black boxes.
+//! Gains that balance a robot, from its model to fixed-point tables; and servos identified as black
+//! boxes.
 
-pub mod study;
 pub mod synth;
 pub mod sysid;
 

@@ -1,13 +1,12 @@
-//! Which physical effect is missing from a model, on which evidence; which experiment comes next;
+//! Which physical effect is missing from a model, on which evidence; which law the library lacks;
 //! and a first model of a log where there is none.
 
 pub mod diagnose;
 pub mod discover;
-pub mod experiment;
 pub mod first_model;
 
 #[cfg(test)]
 use handstand_challenge as challenge;
 use handstand_logs as log;
-use handstand_model::{dynamics, effects, error, model, motion, output};
-use handstand_sim::{fitting, sim};
+use handstand_model::{effects, error, model, motion, output};
+use handstand_sim::fitting;

@@ -1,16 +1,13 @@
-//! A chain of links with the physical effects of its joints: its equations, its file, the motions
-//! that were measured of it, and the errors that everything around it says.
+//! A robot with the physical effects of its joints: its file, and the motions that were measured of
+//! it. The equations are those of `handstand-physics`, which stands here under this crate's name.
 //!
-//! Nothing here simulates, fits, or knows a file's format but the model's own.
+//! Nothing here simulates, fits, or knows a log's format.
 
-pub mod dynamics;
-pub mod effects;
-pub mod error;
 #[cfg(any(test, feature = "testkit"))]
 pub mod fixture;
 pub mod model;
 pub mod motion;
-pub mod output;
 
-pub use error::{Error, Place, Result};
+pub use handstand_physics::{Error, Place, Result};
+pub use handstand_physics::{dynamics, effects, error, output};
 pub use model::Model;

@@ -26,11 +26,12 @@ pub use findings::{Finding, findings};
 pub use page::html;
 pub use printed::{Printed, PrintedQuantity, printed};
 
-use handstand_control::{study, synth, sysid};
+use handstand_control::{synth, sysid};
 use handstand_model::{error, model, motion, output};
 use handstand_report as report;
 use handstand_report::plot;
 use handstand_sim::sim;
+use handstand_study as study;
 
 use crate::error::Result;
 

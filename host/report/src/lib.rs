@@ -55,10 +55,12 @@ pub use text::diagnosis_text;
 pub use tuned::tuned_text;
 pub use verification::verification_text;
 
-use handstand_control::{study, synth};
-use handstand_diagnose::{diagnose, experiment};
+use handstand_control::synth;
+use handstand_diagnose::diagnose;
+use handstand_experiment as experiment;
 use handstand_logs as log;
 use handstand_model::{dynamics, effects, error, model, motion, output};
+use handstand_study as study;
 
 use handstand_sim::{compare, fitting};
 

@@ -7,11 +7,10 @@ pub mod robot_demo;
 
 #[cfg(feature = "virtual-cm5")]
 use handstand_challenge as challenge;
-#[cfg(feature = "virtual-cm5")]
-use handstand_control::study;
 use handstand_control::synth;
 #[cfg(feature = "virtual-cm5")]
-use handstand_diagnose::{diagnose, experiment};
+use handstand_diagnose::diagnose;
+use handstand_experiment as experiment;
 use handstand_link as link;
 #[cfg(feature = "virtual-cm5")]
 use handstand_logs as log;
@@ -23,3 +22,5 @@ use handstand_report as report;
 #[cfg(feature = "virtual-cm5")]
 use handstand_report::plot;
 use handstand_sim::fitting;
+#[cfg(feature = "virtual-cm5")]
+use handstand_study as study;

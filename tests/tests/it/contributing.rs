@@ -11,7 +11,7 @@ fn root() -> PathBuf {
 }
 
 /// A block of a Markdown page whose fence names a file:
-/// ```` ```rust host/model/src/effects/new.rs ````.
+/// ```` ```rust host/physics/src/effects/new.rs ````.
 struct Block {
     /// `rust` is a new file, `diff` a change of one.
     kind: String,
@@ -90,7 +90,7 @@ fn the_worked_examples_of_contributing_compile() {
     let blocks = blocks(&page);
     let files: BTreeSet<&str> = blocks.iter().map(|block| block.file.as_str()).collect();
     for list in [
-        "host/model/src/effects/mod.rs",
+        "host/physics/src/effects/mod.rs",
         "host/control/src/synth/controllers/mod.rs",
     ] {
         assert!(files.contains(list), "no example changes {list}: {files:?}");

@@ -32,13 +32,16 @@ static DIRECT: LazyLock<BTreeMap<String, BTreeSet<String>>> = LazyLock::new(|| {
 });
 
 /// The crates of the PC, and those of them that each may know directly.
-const CRATES: [(&str, &[&str]); 12] = [
-    ("model", &[]),
+const CRATES: [(&str, &[&str]); 15] = [
+    ("physics", &[]),
+    ("model", &["physics"]),
     ("logs", &["model"]),
     ("challenge", &["model"]),
     ("sim", &["model"]),
     ("diagnose", &["logs", "model", "sim"]),
+    ("experiment", &["diagnose", "logs", "model", "sim"]),
     ("control", &["model", "sim"]),
+    ("study", &["control", "model", "sim"]),
     ("link", &["logs", "model", "sim"]),
     (
         "robot",
@@ -46,27 +49,42 @@ const CRATES: [(&str, &[&str]); 12] = [
             "challenge",
             "control",
             "diagnose",
+            "experiment",
             "link",
             "logs",
             "model",
             "report",
             "sim",
+            "study",
         ],
     ),
-    ("report", &["control", "diagnose", "logs", "model", "sim"]),
-    ("paper", &["control", "model", "report", "sim"]),
+    (
+        "report",
+        &[
+            "control",
+            "diagnose",
+            "experiment",
+            "logs",
+            "model",
+            "sim",
+            "study",
+        ],
+    ),
+    ("paper", &["control", "model", "report", "sim", "study"]),
     (
         "lab",
         &[
             "challenge",
             "control",
             "diagnose",
+            "experiment",
             "link",
             "logs",
             "model",
             "report",
             "robot",
             "sim",
+            "study",
         ],
     ),
     ("cm5-sim", &["firmware"]),

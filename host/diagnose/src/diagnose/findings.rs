@@ -233,7 +233,8 @@ impl FittedEffect {
         }
     }
 
-    pub(crate) fn candidate(&self, model: &Model) -> Option<Candidate> {
+    /// The effect at its joint as a candidate; `None` where the model has no such place.
+    pub fn candidate(&self, model: &Model) -> Option<Candidate> {
         let joint = self.joint.map(|joint| joint - 1);
         // The model's own laws first: another model may define a law of the same name.
         let mut laws = model.laws.iter().copied();

@@ -54,6 +54,6 @@ pub use logs::{LogDiagnosis, diagnose_logs, quoted, quoted_logs};
 pub use measured_value::values_behind;
 pub use options::DiagnoseOptions;
 pub use pipeline::diagnose;
-pub(crate) use selection::independent_share;
+pub use selection::independent_share;
 pub(crate) use terms::JointRange;
 pub use whole_error::whole_error_rad;

@@ -170,7 +170,7 @@ pub(super) fn effective_share(errors: &BlockErrors, fit: &Fit) -> f64 {
 }
 
 /// The same share for a fit to these data.
-pub(crate) fn independent_share(fit: &Fit, data: &FitProblem) -> f64 {
+pub fn independent_share(fit: &Fit, data: &FitProblem) -> f64 {
     effective_share(&BlockErrors::of(&fit.residuals, data), fit)
 }
 

@@ -205,7 +205,7 @@ fn move_com(link: &mut Link, com_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::EquationsOfMotion;
+    use handstand_model::dynamics::EquationsOfMotion;
 
     /// Three links that hang freely.
     fn hanging() -> Model {

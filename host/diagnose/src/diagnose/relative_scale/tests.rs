@@ -4,7 +4,7 @@ use crate::diagnose::Verdict;
 use crate::effects::{EFFECTS, Scope};
 use crate::model::{EffectInstance, effect_on};
 use crate::motion::Motion;
-use crate::sim::{Plant, PlantMemory, StartState, predict};
+use handstand_sim::sim::{Plant, PlantMemory, StartState, predict};
 use std::path::Path;
 
 /// A link driven by this, and a passive one on it.

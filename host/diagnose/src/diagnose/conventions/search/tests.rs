@@ -2,7 +2,7 @@ use super::super::{ModelFile, findings};
 use super::*;
 use crate::log::{LogRequest, Severity};
 use crate::motion::MotionSource;
-use crate::sim::{Plant, PlantMemory, StartState, predict};
+use handstand_sim::sim::{Plant, PlantMemory, StartState, predict};
 use std::f64::consts::TAU;
 use std::path::Path;
 
