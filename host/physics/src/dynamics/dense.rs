@@ -3,6 +3,8 @@
 //! The closed form is that of [`EquationsOfMotion`](super::EquationsOfMotion); solved by LDL^T. For
 //! few links that is faster than [`Chain::forward`]'s O(n), and [`Lanes`] run several chains at
 //! once.
+//!
+//! Rest on it in `cargo xtask peers`: "forward dynamics, n = 3, closed form", the closed-loop runs.
 
 use super::chain::Chain;
 use super::equations::{LinkTerms, Turned, coupling, weight};

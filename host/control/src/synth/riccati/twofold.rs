@@ -6,6 +6,8 @@
 //!
 //! Kept beside the crate `twofloat` 0.8, whose scalars are normalised after each operation: a
 //! product of 60 x 60 matrices takes 0.42 ms against 1.25 ms, and the two differ by 5e-31.
+//!
+//! Rest on it in `cargo xtask peers`: "K of 60 states, off 60 digits", and the times of all DLQRs.
 
 use super::dense::product;
 use nalgebra::DMatrix;
