@@ -265,6 +265,7 @@ fn left(progress: &Progress) -> Option<String> {
 mod tests {
     use super::*;
     use handstand::fitting::BestSoFar;
+    use handstand::model::MeasuredSignal;
 
     #[test]
     fn a_line_is_due_now_and_then() {
@@ -291,14 +292,18 @@ mod tests {
                 before_rad: 0.0412,
                 error_rad: 0.00321,
                 floor_rad: 0.0015,
+                quantity: MeasuredSignal::Angle,
             }),
             left_s: Some(301.0),
-            ..begun
+            ..begun.clone()
         };
         assert_eq!(
             progress_line(&later),
             "34 %: every effect alone, best so far coulomb@1 + delay@1: 3.21 of 41.2 mrad, floor \
              1.50, at most 6 min left"
         );
+        let mut slide = later;
+        slide.best.as_mut().unwrap().quantity = MeasuredSignal::Displacement;
+        assert!(progress_line(&slide).contains(": 3.21 of 41.2 mm, floor"));
     }
 }

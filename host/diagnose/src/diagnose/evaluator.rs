@@ -13,10 +13,10 @@ use super::residual_structure::residual_structure;
 use super::search::SearchResults;
 use super::values::as_given;
 use crate::fitting::{
-    Candidate, Fit, FitOptions, FitProblem, Horizon, PredictionChange, Sizes, changes, coarsened,
-    enough_to_search, is_followed, search_horizons,
+    BestSoFar, Candidate, Fit, FitOptions, FitProblem, Horizon, PredictionChange, Sizes, changes,
+    coarsened, enough_to_search, is_followed, search_horizons,
 };
-use crate::model::{Model, ParameterPath};
+use crate::model::{MeasuredSignal, Model, ParameterPath};
 use crate::motion::Motion;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -188,8 +188,13 @@ impl<'a> Evaluator<'a> {
         let reference = evaluated.best.as_ref().unwrap_or(&self.base);
         let is_lower = hypothesis.deciding_mean() < reference.deciding_mean();
         if is_lower && self.improves(reference, hypothesis) {
-            let (before_rad, floor_rad) = (self.given.deciding_rms_rad(), self.training.floor());
-            self.course.found(hypothesis, before_rad, floor_rad);
+            self.course.found(BestSoFar {
+                names: hypothesis.names(),
+                before_rad: self.given.deciding_rms_rad(),
+                error_rad: hypothesis.deciding_rms_rad(),
+                floor_rad: self.training.floor(),
+                quantity: MeasuredSignal::pooled(&self.training.signals),
+            });
             evaluated.best = Some(hypothesis.clone());
         }
     }

@@ -1,6 +1,5 @@
 //! How far a diagnosis has come, over all that it does, and what ends it.
 
-use super::hypothesis::Hypothesis;
 use super::judging::Judging;
 use super::options::DiagnoseOptions;
 use crate::fitting::{BestSoFar, Halt, Progress, StopSwitch};
@@ -199,16 +198,14 @@ impl<'a> Course<'a> {
     }
 
     /// A best so far. What is shown leaves less than what was shown before.
-    pub fn found(&self, hypothesis: &Hypothesis, before_rad: f64, floor_rad: f64) {
-        let error_rad = hypothesis.deciding_rms_rad();
+    pub fn found(&self, best: BestSoFar) {
         let mut steps = self.steps();
-        if steps.best.as_ref().is_none_or(|b| error_rad < b.error_rad) {
-            steps.best = Some(BestSoFar {
-                names: hypothesis.names(),
-                before_rad,
-                error_rad,
-                floor_rad,
-            });
+        if steps
+            .best
+            .as_ref()
+            .is_none_or(|b| best.error_rad < b.error_rad)
+        {
+            steps.best = Some(best);
         }
     }
 

@@ -245,6 +245,7 @@ impl JobSlot {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::MeasuredSignal;
 
     #[test]
     fn work_is_told_of_stopped_and_begun_again() {
@@ -282,6 +283,7 @@ mod tests {
             before_rad: 0.04,
             error_rad: 0.002,
             floor_rad: 0.001,
+            quantity: MeasuredSignal::Angle,
         };
         let hear = |names: &[&str]| {
             report.hear(Progress {

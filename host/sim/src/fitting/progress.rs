@@ -1,5 +1,6 @@
 //! How far a fit or a diagnosis has come.
 
+use crate::model::MeasuredSignal;
 use crate::output::number::short;
 use std::borrow::Cow;
 use std::fmt;
@@ -25,12 +26,14 @@ pub struct Progress {
 pub struct BestSoFar {
     /// Its effects as `coulomb@1`, or its values' addresses; none for the model as it is.
     pub names: Vec<String>,
-    /// Root-mean-square error of the model as given, rad, on the motions that decide.
+    /// Root-mean-square error of the model as given, rad (of slides m), on the motions that decide.
     pub before_rad: f64,
-    /// With the explanation, rad.
+    /// With the explanation.
     pub error_rad: f64,
-    /// What resolution and noise alone leave, rad.
+    /// What resolution and noise alone leave.
     pub floor_rad: f64,
+    /// What the errors are errors of.
+    pub quantity: MeasuredSignal,
 }
 
 /// "coulomb@1 + delay@1: 3.21 of 41.2 mrad, floor 1.50".
@@ -42,7 +45,8 @@ impl fmt::Display for BestSoFar {
             [] => "the model as it is".to_string(),
             names => names.join(" + "),
         };
-        write!(f, "{names}: {error} of {before} mrad, floor {floor}")
+        let milli = self.quantity.milli();
+        write!(f, "{names}: {error} of {before} {milli}, floor {floor}")
     }
 }
 
