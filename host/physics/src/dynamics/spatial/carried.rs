@@ -1,11 +1,8 @@
 //! Motions and forces of a link, and the inertia of what its joint carries.
 
-use super::small::{
-    Matrix, Symmetric, Vector, add, cross, dot, plus, product, product_transposed, scaled, times,
-    times_transposed, transposed,
-};
+use super::small::{Matrix, Vector, cross, dot, scaled};
 
-/// What turns and what shifts: a speed, an acceleration, or a moment and a force.
+/// What turns and what shifts: an acceleration, or a moment and a force.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Spatial {
     pub turning: Vector,
@@ -13,97 +10,114 @@ pub struct Spatial {
 }
 
 /// Inertia of what a joint carries: moment = turning * angular + mixed * linear, force = mixed' *
-/// angular + shifting * linear.
+/// angular + shifting * linear, with symmetric `turning` and `shifting`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Carried {
-    pub turning: Symmetric,
+    pub turning: Matrix,
     pub mixed: Matrix,
-    pub shifting: Symmetric,
+    pub shifting: Matrix,
 }
 
 impl Spatial {
     #[inline(always)]
     pub fn dot(&self, other: &Spatial) -> f64 {
-        dot(&self.turning, &other.turning) + dot(&self.shifting, &other.shifting)
+        dot(self.turning, other.turning) + dot(self.shifting, other.shifting)
     }
 
     #[inline(always)]
     pub fn add(&mut self, other: &Spatial, share: f64) {
-        add(&mut self.turning, &other.turning, share);
-        add(&mut self.shifting, &other.shifting, share);
+        self.turning = self.turning + scaled(other.turning, share);
+        self.shifting = self.shifting + scaled(other.shifting, share);
     }
 
-    /// The part that a joint moves.
+    /// The part along an axis that a joint moves.
     #[inline(always)]
-    pub fn along(&mut self, slides: bool) -> &mut f64 {
-        if slides {
-            &mut self.shifting[2]
+    pub fn along(&self, axis: Vector, slides: bool) -> f64 {
+        dot(axis, if slides { self.shifting } else { self.turning })
+    }
+
+    /// Adds what a joint moves along its axis.
+    #[inline(always)]
+    pub fn add_along(&mut self, axis: Vector, slides: bool, by: f64) {
+        let part = if slides {
+            &mut self.shifting
         } else {
-            &mut self.turning[2]
+            &mut self.turning
+        };
+        *part = *part + scaled(axis, by);
+    }
+
+    /// An acceleration of a frame, at a point of it that lies `arm` from its origin.
+    #[inline(always)]
+    pub fn carried_on(&self, arm: Vector) -> Spatial {
+        Spatial {
+            turning: self.turning,
+            shifting: self.shifting + cross(self.turning, arm),
+        }
+    }
+
+    /// A moment and a force, about a point from which their own lies `arm`.
+    #[inline(always)]
+    pub fn handed_down(&self, arm: Vector) -> Spatial {
+        Spatial {
+            turning: self.turning + cross(arm, self.shifting),
+            shifting: self.shifting,
         }
     }
 }
 
 impl Carried {
+    /// Moment and force at an acceleration.
     #[inline(always)]
     pub fn times(&self, a: &Spatial) -> Spatial {
         Spatial {
-            turning: plus(
-                self.turning.times(&a.turning),
-                times(&self.mixed, &a.shifting),
-            ),
-            shifting: plus(
-                times_transposed(&self.mixed, &a.turning),
-                self.shifting.times(&a.shifting),
-            ),
+            turning: self.turning.combined(a.turning) + self.mixed.times(a.shifting),
+            shifting: self.mixed.combined(a.turning) + self.shifting.combined(a.shifting),
         }
     }
 
-    /// Takes away what the joint gives way to.
+    /// Moment and force at an acceleration of 1 along an axis, that of a joint.
     #[inline(always)]
-    pub fn give_way(&mut self, pull: &Spatial, inverse: f64) {
-        self.turning.subtract_square(&pull.turning, inverse);
-        self.shifting.subtract_square(&pull.shifting, inverse);
-        let [x, y, z] = &mut self.mixed;
-        let given = scaled(&pull.shifting, -inverse);
-        add(x, &given, pull.turning[0]);
-        add(y, &given, pull.turning[1]);
-        add(z, &given, pull.turning[2]);
+    pub fn pull(&self, axis: Vector, slides: bool) -> Spatial {
+        if slides {
+            Spatial {
+                turning: self.mixed.times(axis),
+                shifting: self.shifting.combined(axis),
+            }
+        } else {
+            Spatial {
+                turning: self.turning.combined(axis),
+                shifting: self.mixed.combined(axis),
+            }
+        }
     }
 
-    /// Adds the inertia of a link with these axes and this origin.
+    /// Takes away what a joint with this pull gives way to.
     #[inline(always)]
-    pub fn add_seen(&mut self, own: &Carried, axes: &Matrix, p: &Vector) {
-        let turning = own.turning.seen(axes);
-        let mixed = product_transposed(&product(axes, &own.mixed), axes);
-        let shifting = own.shifting.seen(axes);
-        // With [p] the matrix of the cross product by the origin: [p] a crosses a's columns, which
-        // are the rows of a symmetric one, and a [p] crosses a's rows with p.
-        let [x, y, z] = shifting.full();
-        let reach = transposed(&[cross(p, &x), cross(p, &y), cross(p, &z)]);
-        let crossed = [
-            cross(&mixed[0], p),
-            cross(&mixed[1], p),
-            cross(&mixed[2], p),
-        ];
-        let reached = [
-            cross(&reach[0], p),
-            cross(&reach[1], p),
-            cross(&reach[2], p),
-        ];
-        self.turning.add(&turning);
-        self.turning.add(&Symmetric([
-            -2.0 * crossed[0][0] - reached[0][0],
-            -(crossed[0][1] + crossed[1][0]) - reached[0][1],
-            -(crossed[0][2] + crossed[2][0]) - reached[0][2],
-            -2.0 * crossed[1][1] - reached[1][1],
-            -(crossed[1][2] + crossed[2][1]) - reached[1][2],
-            -2.0 * crossed[2][2] - reached[2][2],
-        ]));
-        let [a, b, c] = &mut self.mixed;
-        add(a, &plus(mixed[0], reach[0]), 1.0);
-        add(b, &plus(mixed[1], reach[1]), 1.0);
-        add(c, &plus(mixed[2], reach[2]), 1.0);
-        self.shifting.add(&shifting);
+    pub fn give_way(&mut self, pull: &Spatial, inverse: f64) {
+        let shifting = scaled(pull.shifting, -inverse);
+        self.turning
+            .add_product(pull.turning, scaled(pull.turning, -inverse));
+        self.mixed.add_product(pull.turning, shifting);
+        self.shifting.add_product(pull.shifting, shifting);
+    }
+
+    /// Adds an inertia whose origin lies `arm` from this one's.
+    ///
+    /// With [p] the matrix of the cross product by the arm, the shifted one has mixed + [p]
+    /// shifting, and turning - z - z', where z = (mixed + [p] shifting / 2) [p].
+    #[inline(always)]
+    pub fn add_seen(&mut self, own: &Carried, arm: Vector) {
+        let reach = own.shifting.crossed_by(arm);
+        let mut half = own.mixed;
+        for (row, reach) in half.0.iter_mut().zip(&reach.0) {
+            *row = cross(arm, *row + scaled(*reach, 0.5));
+        }
+        self.turning.add(&own.turning);
+        self.turning.add(&half);
+        self.turning.add(&half.transposed());
+        self.mixed.add(&own.mixed);
+        self.mixed.add(&reach);
+        self.shifting.add(&own.shifting);
     }
 }

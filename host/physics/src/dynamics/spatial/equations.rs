@@ -1,15 +1,16 @@
 //! The equations of motion of a tree in space.
 //!
 //! Featherstone, Rigid Body Dynamics Algorithms (2008): articulated bodies (section 7.3) forwards,
-//! recursive Newton-Euler (section 5.3) backwards. Every link's vectors are in a frame of its own
-//! whose third axis is its joint's: what a joint moves is then a column, and its turn mixes two. A
-//! held joint passes the inertia of what it carries on whole, as in a planar chain
+//! recursive Newton-Euler (section 5.3) backwards. Every link's vectors lie along the base's axes
+//! and are taken about the link's own origin, which is on its joint's axis: from link to link
+//! nothing is turned. Accelerations are those of points, so that no linear speed is needed. A held
+//! joint passes the inertia of what it carries on whole, as in a planar chain
 //! ([`Chain::forward`](crate::dynamics::Chain::forward)).
 
 use super::SpatialTree;
 use super::carried::{Carried, Spatial};
-use super::small::{Matrix, Symmetric, Vector, cross, dot, plus, scaled, times, times_transposed};
-use crate::dynamics::lanes::Lane;
+use super::small::{Matrix, Vector, cross, dot, scaled, vector};
+use crate::dynamics::lanes::{Lane, Lanes, each};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// A [`SpatialTree`] made ready for computing.
@@ -23,15 +24,15 @@ pub struct SpatialEquations {
 #[derive(Debug, Clone)]
 struct Link {
     parent: Option<usize>,
-    /// The frame at 0 in the parent's: its axes, and its origin.
+    /// The frame at 0 in the parent's: its axes, the third that of the joint, and its origin.
     place: Matrix,
     origin: Vector,
     slides: bool,
     mass_kg: f64,
-    /// Mass times centre of mass.
+    /// Mass times centre of mass, in the frame.
     moment: Vector,
-    /// Moments of inertia about the frame's origin.
-    inertia: Symmetric,
+    /// Moments of inertia about the frame's origin, along its axes.
+    inertia: Matrix,
     armature: f64,
 }
 
@@ -43,13 +44,20 @@ pub struct SpatialWorkspace {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Scratch {
-    /// The frame's axes and origin in the parent's.
+    /// Sine and cosine of the joint's angle.
+    turn: (f64, f64),
+    /// The frame's axes.
     axes: Matrix,
-    origin: Vector,
-    speed: Spatial,
+    /// From the parent's origin to the frame's.
+    arm: Vector,
+    /// Angular speed.
+    speed: Vector,
     /// Acceleration that speeds alone give.
     bias: Spatial,
     acceleration: Spatial,
+    /// Mass times centre of mass.
+    moment: Vector,
+    /// Inertia of the rigid link; of all that it carries, once gathered.
     inertia: Carried,
     /// Moment and force at no acceleration.
     force: Spatial,
@@ -61,65 +69,53 @@ struct Scratch {
     left: f64,
 }
 
+/// A frame along the base's axes.
+const BASE: Matrix = Matrix([
+    Lanes([1.0, 0.0, 0.0, 0.0]),
+    Lanes([0.0, 1.0, 0.0, 0.0]),
+    Lanes([0.0, 0.0, 1.0, 0.0]),
+]);
+
 impl Scratch {
-    /// A speed or an acceleration of the parent's frame, as this link's frame has it.
+    /// The joint's axis.
     #[inline(always)]
-    fn carried_on(&self, parent: &Spatial) -> Spatial {
-        let moved = plus(parent.shifting, cross(&parent.turning, &self.origin));
-        Spatial {
-            turning: times_transposed(&self.axes, &parent.turning),
-            shifting: times_transposed(&self.axes, &moved),
-        }
+    fn axis(&self) -> Vector {
+        self.axes.0[2]
     }
 
-    /// A moment and a force on this link, as they act on the parent's frame.
+    /// Moment and force of the rigid link at this acceleration.
     #[inline(always)]
-    fn handed_down(&self, force: &Spatial) -> Spatial {
-        let shifting = times(&self.axes, &force.shifting);
-        let turning = times(&self.axes, &force.turning);
+    fn inertial(&self, mass_kg: f64, a: &Spatial) -> Spatial {
+        let turning = self.inertia.turning.combined(a.turning);
         Spatial {
-            turning: plus(turning, cross(&self.origin, &shifting)),
-            shifting,
+            turning: turning + cross(self.moment, a.shifting),
+            shifting: scaled(a.shifting, mass_kg) + cross(a.turning, self.moment),
         }
     }
 }
 
 impl Link {
-    fn rigid(&self) -> Carried {
-        let [x, y, z] = self.moment;
-        Carried {
-            turning: self.inertia,
-            mixed: [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]],
-            shifting: Symmetric::diagonal(self.mass_kg),
+    /// The link's own inertia along the base's axes.
+    #[inline(always)]
+    fn lay(&self, at: &mut Scratch) {
+        let columns = self.inertia.0.map(|column| at.axes.combined(column));
+        let mut turning = Matrix::default();
+        for (column, axis) in columns.into_iter().zip(at.axes.0) {
+            turning.add_product(axis, column);
         }
+        at.inertia.turning = turning;
+        at.moment = at.axes.combined(self.moment);
     }
 
-    /// Moment and force of the rigid link at this acceleration.
+    /// The rest of its inertia, and the moment and force that keep it turning.
     #[inline(always)]
-    fn inertial(&self, a: &Spatial) -> Spatial {
-        Spatial {
-            turning: plus(
-                self.inertia.times(&a.turning),
-                cross(&self.moment, &a.shifting),
-            ),
-            shifting: plus(
-                scaled(&a.shifting, self.mass_kg),
-                cross(&a.turning, &self.moment),
-            ),
-        }
-    }
-
-    /// Moment and force that keep the link moving at this speed.
-    #[inline(always)]
-    fn gyroscopic(&self, speed: &Spatial) -> Spatial {
-        let momentum = self.inertial(speed);
-        Spatial {
-            turning: plus(
-                cross(&speed.turning, &momentum.turning),
-                cross(&speed.shifting, &momentum.shifting),
-            ),
-            shifting: cross(&speed.turning, &momentum.shifting),
-        }
+    fn settle(&self, at: &mut Scratch) {
+        at.inertia.mixed = Matrix::crossing(at.moment);
+        at.inertia.shifting = Matrix::diagonal(self.mass_kg);
+        at.force = Spatial {
+            turning: cross(at.speed, at.inertia.turning.combined(at.speed)),
+            shifting: cross(at.speed, cross(at.speed, at.moment)),
+        };
     }
 }
 
@@ -144,18 +140,18 @@ impl SpatialEquations {
                 aligned[i].tr_mul(&link.inertia_kg_m2) * aligned[i] - arm * arm * link.mass_kg;
             Link {
                 parent: link.parent,
-                place: rows(&(before.tr_mul(&place) * aligned[i])),
-                origin: before.tr_mul(&link.place.translation.vector).into(),
+                place: columns(&(before.tr_mul(&place) * aligned[i])),
+                origin: vector(before.tr_mul(&link.place.translation.vector).into()),
                 slides: link.slides,
                 mass_kg: link.mass_kg,
-                moment: (com * link.mass_kg).into(),
-                inertia: Symmetric::of(&rows(&inertia)),
+                moment: vector((com * link.mass_kg).into()),
+                inertia: columns(&inertia),
                 armature: link.armature_kg_m2,
             }
         });
         SpatialEquations {
             links: links.collect(),
-            base_m_s2: (-tree.gravity_m_s2).into(),
+            base_m_s2: vector((-tree.gravity_m_s2).into()),
         }
     }
 
@@ -175,50 +171,57 @@ impl SpatialEquations {
         match link.parent {
             Some(parent) => work.links[parent].acceleration,
             None => Spatial {
-                turning: [0.0; 3],
+                turning: Vector::default(),
                 shifting: self.base_m_s2,
             },
         }
     }
 
-    /// From the base outwards: how every link lies and moves.
+    /// From the base outwards: how every link lies and moves, and what that alone asks for.
     #[inline(always)]
     fn find_motions(&self, work: &mut SpatialWorkspace, angle_rad: &[f64], speed_rad_s: &[f64]) {
         if work.links.len() != self.links.len() {
             work.links.resize(self.links.len(), Scratch::default());
         }
-        for (i, link) in self.links.iter().enumerate() {
-            let parent = link
-                .parent
-                .map_or(Spatial::default(), |p| work.links[p].speed);
-            let (at, speed) = (&mut work.links[i], speed_rad_s[i]);
-            let [x, y, z] = &link.place;
-            if link.slides {
-                let moved = scaled(&[x[2], y[2], z[2]], angle_rad[i]);
-                (at.axes, at.origin) = (link.place, plus(link.origin, moved));
-            } else {
-                let (sin, cos) = Lane::sin_cos(angle_rad[i]);
-                at.axes = [
-                    [cos * x[0] + sin * x[1], cos * x[1] - sin * x[0], x[2]],
-                    [cos * y[0] + sin * y[1], cos * y[1] - sin * y[0], y[2]],
-                    [cos * z[0] + sin * z[1], cos * z[1] - sin * z[0], z[2]],
-                ];
-                at.origin = link.origin;
+        let turns = (work.links.chunks_mut(4)).zip(angle_rad.chunks(4));
+        for (links, angles) in turns {
+            let (sin, cos) = f64::sin_cos_of::<4>(each(|i| angles.get(i).copied().unwrap_or(0.0)));
+            for ((at, sin), cos) in links.iter_mut().zip(sin).zip(cos) {
+                at.turn = (sin, cos);
             }
-            at.speed = at.carried_on(&parent);
-            *at.speed.along(link.slides) += speed;
-            let ([x, y, _], [u, v, _]) = (at.speed.turning, at.speed.shifting);
-            at.bias = if link.slides {
-                Spatial {
-                    turning: [0.0; 3],
-                    shifting: [y * speed, -x * speed, 0.0],
-                }
-            } else {
-                Spatial {
-                    turning: [y * speed, -x * speed, 0.0],
-                    shifting: [v * speed, -u * speed, 0.0],
-                }
+        }
+        for (i, link) in self.links.iter().enumerate() {
+            let (axes, turning) = match link.parent {
+                Some(parent) => (work.links[parent].axes, work.links[parent].speed),
+                None => (BASE, Vector::default()),
             };
+            let (at, speed) = (&mut work.links[i], speed_rad_s[i]);
+            let [x, y, axis] = link.place.0.map(|own| axes.combined(own));
+            let arm = axes.combined(link.origin);
+            let along = cross(turning, scaled(axis, speed));
+            if link.slides {
+                at.axes = Matrix([x, y, axis]);
+                at.arm = arm + scaled(axis, angle_rad[i]);
+                at.speed = turning;
+                at.bias.turning = Vector::default();
+                at.bias.shifting = cross(turning, cross(turning, at.arm)) + along + along;
+            } else {
+                let (sin, cos) = at.turn;
+                at.axes = Matrix([
+                    scaled(x, cos) + scaled(y, sin),
+                    scaled(y, cos) - scaled(x, sin),
+                    axis,
+                ]);
+                at.arm = arm;
+                at.speed = turning + scaled(axis, speed);
+                at.bias.turning = along;
+                at.bias.shifting = cross(turning, cross(turning, arm));
+            }
+            link.lay(at);
+        }
+        // In a loop of its own: links wait for those that carry them above, and not here.
+        for (at, link) in work.links.iter_mut().zip(&self.links) {
+            link.settle(at);
         }
     }
 
@@ -234,64 +237,30 @@ impl SpatialEquations {
         held: &[bool],
         out: &mut [f64],
     ) {
-        let n = self.links.len();
-        let (angle_rad, speed_rad_s) = (&angle_rad[..n], &speed_rad_s[..n]);
-        let (torque_nm, held, out) = (&torque_nm[..n], &held[..n], &mut out[..n]);
-        self.find_motions(work, angle_rad, speed_rad_s);
-        self.gather(work, torque_nm, held);
-        for (i, link) in self.links.iter().enumerate() {
-            let parent = self.before(work, link);
-            let at = &mut work.links[i];
-            let mut acceleration = at.carried_on(&parent);
-            acceleration.add(&at.bias, 1.0);
-            let pulled = at.pull.dot(&acceleration) - at.left;
-            out[i] = if held[i] {
-                pulled
-            } else {
-                -pulled * at.inverse
-            };
-            if !held[i] {
-                *acceleration.along(link.slides) += out[i];
-            }
-            at.acceleration = acceleration;
-        }
+        forward(self, work, [angle_rad, speed_rad_s, torque_nm], held, out);
     }
 
     /// From the tips inwards: what everything behind a joint asks of it.
     #[inline(always)]
     fn gather(&self, work: &mut SpatialWorkspace, torque_nm: &[f64], held: &[bool]) {
-        for (at, link) in work.links.iter_mut().zip(&self.links) {
-            at.inertia = link.rigid();
-            at.force = link.gyroscopic(&at.speed);
-        }
         for (i, link) in self.links.iter().enumerate().rev() {
             let (carrying, carried) = work.links.split_at_mut(i);
             let at = &mut carried[0];
-            let inertia = &mut at.inertia;
-            let mixed = inertia.mixed;
-            at.pull = if link.slides {
-                Spatial {
-                    turning: [mixed[0][2], mixed[1][2], mixed[2][2]],
-                    shifting: inertia.shifting.column_2(),
-                }
-            } else {
-                Spatial {
-                    turning: inertia.turning.column_2(),
-                    shifting: mixed[2],
-                }
-            };
-            let (mut pull, mut force) = (at.pull, at.force);
-            at.inverse = 1.0 / (*pull.along(link.slides) + link.armature);
-            at.left = torque_nm[i] - *force.along(link.slides);
+            at.pull = at.inertia.pull(at.axis(), link.slides);
+            at.inverse = 1.0 / (at.pull.along(at.axis(), link.slides) + link.armature);
+            at.left = torque_nm[i] - at.force.along(at.axis(), link.slides);
             let Some(parent) = link.parent else { continue };
-            if !held[i] {
-                inertia.give_way(&at.pull, at.inverse);
-                force.add(&at.pull, at.left * at.inverse);
-            }
-            force.add(&inertia.times(&at.bias), 1.0);
             let parent = &mut carrying[parent];
-            parent.inertia.add_seen(&at.inertia, &at.axes, &at.origin);
-            parent.force.add(&at.handed_down(&force), 1.0);
+            let mut force = at.inertia.times(&at.bias);
+            force.add(&at.force, 1.0);
+            // What gives way is taken from the parent's sum: the sum need not wait for it.
+            parent.inertia.add_seen(&at.inertia, at.arm);
+            if !held[i] {
+                force.add(&at.pull, (at.left - at.pull.dot(&at.bias)) * at.inverse);
+                let pull = at.pull.handed_down(at.arm);
+                parent.inertia.give_way(&pull, at.inverse);
+            }
+            parent.force.add(&force.handed_down(at.arm), 1.0);
         }
     }
 
@@ -321,24 +290,62 @@ impl SpatialEquations {
         for (i, link) in self.links.iter().enumerate() {
             let parent = self.before(work, link);
             let at = &mut work.links[i];
-            at.acceleration = at.carried_on(&parent);
-            at.acceleration.add(&at.bias, 1.0);
-            *at.acceleration.along(link.slides) += acceleration_rad_s2[i];
-            at.force = link.inertial(&at.acceleration);
-            at.force.add(&link.gyroscopic(&at.speed), 1.0);
+            let mut acceleration = parent.carried_on(at.arm);
+            acceleration.add(&at.bias, 1.0);
+            acceleration.add_along(at.axis(), link.slides, acceleration_rad_s2[i]);
+            at.acceleration = acceleration;
+            let inertial = at.inertial(link.mass_kg, &acceleration);
+            at.force.add(&inertial, 1.0);
         }
         for (i, link) in self.links.iter().enumerate().rev() {
             let at = work.links[i];
-            let mut force = at.force;
-            out[i] = *force.along(link.slides) + link.armature * acceleration_rad_s2[i];
-            bearing_n(i, dot(&force.shifting, &force.shifting).sqrt());
+            let force = at.force;
+            out[i] = force.along(at.axis(), link.slides) + link.armature * acceleration_rad_s2[i];
+            bearing_n(i, dot(force.shifting, force.shifting).sqrt());
             if let Some(parent) = link.parent {
-                work.links[parent].force.add(&at.handed_down(&force), 1.0);
+                let handed_down = force.handed_down(at.arm);
+                work.links[parent].force.add(&handed_down, 1.0);
             }
         }
     }
 }
 
-fn rows(matrix: &Matrix3<f64>) -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|k| matrix[(i, k)]))
+/// [`SpatialEquations::forward`]. Wider registers give the same bits: no product is fused with a
+/// sum.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn forward(
+    equations: &SpatialEquations,
+    work: &mut SpatialWorkspace,
+    [angle_rad, speed_rad_s, torque_nm]: [&[f64]; 3],
+    held: &[bool],
+    out: &mut [f64],
+) {
+    let n = equations.links.len();
+    let (angle_rad, speed_rad_s) = (&angle_rad[..n], &speed_rad_s[..n]);
+    let (torque_nm, held, out) = (&torque_nm[..n], &held[..n], &mut out[..n]);
+    equations.find_motions(work, angle_rad, speed_rad_s);
+    equations.gather(work, torque_nm, held);
+    for (i, link) in equations.links.iter().enumerate() {
+        let parent = equations.before(work, link);
+        let at = &mut work.links[i];
+        let mut acceleration = parent.carried_on(at.arm);
+        acceleration.add(&at.bias, 1.0);
+        let pulled = at.pull.dot(&acceleration) - at.left;
+        out[i] = if held[i] {
+            pulled
+        } else {
+            -pulled * at.inverse
+        };
+        if !held[i] {
+            acceleration.add_along(at.axis(), link.slides, out[i]);
+        }
+        at.acceleration = acceleration;
+    }
+}
+
+/// The columns of a matrix, as rows.
+fn columns(matrix: &Matrix3<f64>) -> Matrix {
+    Matrix(std::array::from_fn(|k| {
+        vector(matrix.column(k).into_owned().into())
+    }))
 }
