@@ -3,13 +3,15 @@
     python hidden_space.py FOLDER --effects coulomb --seed 3
     python hidden_space.py FOLDER --effects delay@2 --seed 1
     python hidden_space.py FOLDER --effects nothing --seed 1
+    python hidden_space.py FOLDER --arm panda --effects coulomb --seed 3
     python hidden_space.py FOLDER --urdf so101.urdf --convention any --seed 1
 
-The arm is a small desk arm of five joints about axes in three directions, or the serial arm of a
-URDF. Its servos regulate their goal: duty = gain * (goal - reading) up to full duty, torque = stall
-torque * duty - back-EMF. Encoders have 4096 steps a turn; rows come at 50 Hz. Its motions are those
-of people who record such arms: random targets, each reached in some time and held for some. Two
-motions of 20 s to learn from, one held out.
+The arm is a small desk arm of five joints about axes in three directions, one of seven like the
+Panda, or the serial arm of a URDF. Its drives regulate their goal: duty = gain * (goal - reading)
+up to full duty, torque = stall torque * duty - back-EMF; the Panda's are as much stronger as its
+links ask for, and so are friction, rotors and what is hidden in them. Encoders have 4096 steps a
+turn; rows come at 50 Hz. Its motions are those of people who record such arms: random targets, each
+reached in some time and held for some. Two motions of 20 s to learn from, one held out.
 
 Writes arm.urdf, nominal.toml (what the owner believes: viscous friction up to 30 % off and free,
 the hidden effect absent), true.toml, the logs, and truth.json; prints the latter. Equal arguments
@@ -24,6 +26,7 @@ armature and dry friction are MuJoCo's own; drives, delay and encoders are appli
 """
 
 import argparse
+import dataclasses
 import json
 import math
 import pathlib
@@ -41,10 +44,13 @@ SAMPLE_S = 0.02
 ROWS = 1000
 TICK_RAD = math.tau / 4096
 GAIN_PER_RAD = 5.0
-STALL_NM = 2.9
 NO_LOAD_RAD_S = 6.0
-BACK_EMF_NM_S_RAD = STALL_NM / NO_LOAD_RAD_S
 ARMATURE_KG_M2 = 0.02
+# Of the servos of small arms. The Panda's drives give up to 87 and 12 N m (its data sheet).
+STALL_NM = 2.9
+PANDA_STALL_NM = [87.0] * 4 + [12.0] * 3
+# A link of the Panda against one of a desk arm.
+PANDA_LINKS = 10.0
 VISCOUS_NM_S_RAD = (0.05, 0.25)
 COULOMB_NM = (0.02, 0.1)
 
@@ -57,41 +63,65 @@ def signed(low, high):
     return lambda rng, sign: sign * rng.uniform(low, high)
 
 
-# Kind: the joints at which it shows, its values.
-ANY = range(1, 6)
+# Kind: the joints at which it shows, none for all; its values, of the servo of a small arm.
 EFFECTS = {
-    "coulomb": (ANY, {"torque_nm": within(0.06, 0.2)}),
-    "armature": (ANY, {"inertia_kg_m2": within(0.01, 0.04)}),
-    "delay": (ANY, {"delay_s": within(0.03, 0.1)}),
-    "dead_zone": (ANY, {"width": within(0.03, 0.1), "punch": within(0.0, 0.0)}),
+    "coulomb": (None, {"torque_nm": within(0.06, 0.2)}),
+    "armature": (None, {"inertia_kg_m2": within(0.01, 0.04)}),
+    "delay": (None, {"delay_s": within(0.03, 0.1)}),
+    "dead_zone": (None, {"width": within(0.03, 0.1), "punch": within(0.0, 0.0)}),
     "mass": (range(2, 6), {"added_kg": within(0.05, 0.2)}),
     "encoder_zero": (range(2, 5), {"offset_rad": signed(0.04, 0.1)}),
     "torque_saturation": (range(2, 5), {"limit_nm": within(0.5, 0.8)}),
 }
+# Values that are as much larger as the drive is stronger.
+OF_THE_DRIVE = ("torque_nm", "inertia_kg_m2", "limit_nm")
 
 
 def stream(seed, number):
     return np.random.default_rng([seed, number])
 
 
-def drawn(word, seed):
+@dataclasses.dataclass(frozen=True)
+class Drives:
+    """How strong the drives are, N m, and how heavy the links against a desk arm's."""
+
+    stall_nm: list
+    links: float = 1.0
+
+    def share(self, joint):
+        """This joint's drive against a small arm's."""
+        return self.stall_nm[joint] / STALL_NM
+
+    def back_emf_nm_s_rad(self, joint):
+        return self.stall_nm[joint] / NO_LOAD_RAD_S
+
+    def armature_kg_m2(self, joint):
+        return ARMATURE_KG_M2 * self.share(joint)
+
+
+def drawn(word, seed, drives):
     """An effect of this name, its joint and values drawn where the name has none."""
     kind, _, joint = word.partition("@")
     if kind not in EFFECTS:
         sys.exit(f"there is no effect {kind}: {', '.join(EFFECTS)}")
     joints, values = EFFECTS[kind]
     rng = stream(seed, 100 + sorted(EFFECTS).index(kind))
+    joints = joints or range(1, len(drives.stall_nm) + 1)
     at = int(joint) if joint else int(rng.choice(list(joints)))
     sign = float(rng.choice([-1.0, 1.0]))
-    parameters = {key: round(float(draw(rng, sign)), 4) for key, draw in values.items()}
+    scale = dict.fromkeys(OF_THE_DRIVE, drives.share(at - 1)) | {"added_kg": drives.links}
+    parameters = {
+        key: round(float(draw(rng, sign)) * scale.get(key, 1.0), 4) for key, draw in values.items()
+    }
     return {"kind": kind, "joint": at, "parameters": parameters}
 
 
 class Arm:
     """The arm with its friction and what is hidden in it."""
 
-    def __init__(self, joints, step_s, friction, effects):
+    def __init__(self, joints, drives, step_s, friction, effects):
         self.joints = joints
+        self.drives = drives
         self.step_s = step_s
         self.viscous = friction["viscous"]
         self.dry = friction.get("coulomb", [0.0] * len(joints))
@@ -108,8 +138,9 @@ class Arm:
         )
         body = ""
         for j, joint in enumerate(self.joints):
-            armature = ARMATURE_KG_M2 + self.value("armature", j, "inertia_kg_m2")
-            damping = self.viscous[j] + (0.0 if self.limit_nm(j) else BACK_EMF_NM_S_RAD)
+            armature = self.drives.armature_kg_m2(j) + self.value("armature", j, "inertia_kg_m2")
+            back_emf = 0.0 if self.limit_nm(j) else self.drives.back_emf_nm_s_rad(j)
+            damping = self.viscous[j] + back_emf
             rub = self.dry[j] + self.value("coulomb", j, "torque_nm")
             body += space_arm.body(
                 joint,
@@ -129,9 +160,10 @@ class Arm:
         if abs(duty) <= self.value("dead_zone", joint, "width", -1.0):
             duty = 0.0
         limit = self.limit_nm(joint)
+        torque_nm = self.drives.stall_nm[joint] * duty
         if not limit:
-            return STALL_NM * duty
-        return min(limit, max(-limit, STALL_NM * duty - BACK_EMF_NM_S_RAD * speed))
+            return torque_nm
+        return min(limit, max(-limit, torque_nm - self.drives.back_emf_nm_s_rad(joint) * speed))
 
     def record(self, goals):
         """Readings at each row, rad, of a motion that begins at rest at its first goals."""
@@ -183,7 +215,8 @@ def convention(word, joints, seed):
     """
     rng = stream(seed, 50)
     kind = str(rng.choice(["sign", "zero", "unit"])) if word == "any" else word
-    drawn = {"kind": kind, "joint": 1 + int(rng.integers(len(joints))), "factor": 1.0, "offset": 0.0}
+    joint = 1 + int(rng.integers(len(joints)))
+    drawn = {"kind": kind, "joint": joint, "factor": 1.0, "offset": 0.0}
     if kind == "sign":
         drawn["factor"] = -1.0
     elif kind == "zero":
@@ -202,19 +235,20 @@ OWN = {
 }
 
 
-def model_toml(joints, friction, effects):
+def model_toml(joints, drives, friction, effects):
     lines = ["[rig]", 'name = "arm in space"', 'robot = "arm.urdf"', ""]
-    for joint in joints:
+    for joint, stall_nm in zip(joints, drives.stall_nm):
         lines += [
             "[[joint]]",
             f'name = "{joint.name}"',
             'drive = "position"',
             f"gain_per_rad = {GAIN_PER_RAD}",
-            f"stall_torque_nm = {STALL_NM}",
+            f"stall_torque_nm = {stall_nm}",
             f"no_load_speed_rad_s = {NO_LOAD_RAD_S}",
             "",
         ]
-    own = {"armature": [ARMATURE_KG_M2] * len(joints), **friction}
+    rotors = [round(drives.armature_kg_m2(j), 4) for j in range(len(joints))]
+    own = {"armature": rotors, **friction}
     for kind, values in own.items():
         for joint, value in enumerate(values, start=1):
             more = [e for e in effects if (e["kind"], e["joint"]) == (kind, joint)]
@@ -259,19 +293,24 @@ def csv(joints, goals, angles):
 
 def write(args):
     """The files, and what is true of them."""
-    urdf = args.urdf.read_text() if args.urdf else space_arm.desk_urdf()
+    urdf = args.urdf.read_text() if args.urdf else space_arm.urdf_of(args.arm)
     joints = space_arm.joints(urdf)
+    drives = Drives([STALL_NM] * len(joints))
+    if args.arm == "panda" and not args.urdf:
+        drives = Drives(PANDA_STALL_NM, PANDA_LINKS)
     words = [] if args.effects == "nothing" else args.effects.split(",")
-    effects = [drawn(word, args.seed) for word in words]
+    effects = [drawn(word, args.seed, drives) for word in words]
     rng = stream(args.seed, 1)
     off = {"viscous": VISCOUS_NM_S_RAD}
     if args.convention:
         off["coulomb"] = COULOMB_NM
     true, believed = {}, {}
     for kind, bounds in off.items():
-        true[kind] = [round(float(rng.uniform(*bounds)), 4) for _ in joints]
+        true[kind] = [
+            round(float(rng.uniform(*bounds)) * drives.share(j), 4) for j in range(len(joints))
+        ]
         believed[kind] = [round(own * float(rng.uniform(0.7, 1.3)), 4) for own in true[kind]]
-    arm = Arm(joints, COARSE_STEP_S if args.convention else STEP_S, true, effects)
+    arm = Arm(joints, drives, COARSE_STEP_S if args.convention else STEP_S, true, effects)
 
     written = None
     if args.convention not in (None, "file"):
@@ -287,8 +326,8 @@ def write(args):
         (args.folder / f"{name}.csv").write_text(csv(joints, goals, angles))
         logs.append(f"{name}.csv")
     (args.folder / "arm.urdf").write_text(urdf)
-    (args.folder / "nominal.toml").write_text(model_toml(joints, believed, []))
-    (args.folder / "true.toml").write_text(model_toml(joints, true, effects))
+    (args.folder / "nominal.toml").write_text(model_toml(joints, drives, believed, []))
+    (args.folder / "true.toml").write_text(model_toml(joints, drives, true, effects))
     truth = {
         "seed": args.seed,
         "effects": effects,
@@ -303,7 +342,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--effects", default="nothing", help="kind[@joint],... or nothing")
-    parser.add_argument("--urdf", type=pathlib.Path, help="the arm; the desk arm without it")
+    parser.add_argument("--arm", choices=space_arm.ARMS, default="desk")
+    parser.add_argument("--urdf", type=pathlib.Path, help="the file of another serial arm")
     parser.add_argument(
         "--convention",
         choices=["any", "sign", "zero", "unit", "file"],

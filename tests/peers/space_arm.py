@@ -13,35 +13,59 @@ WEIGHTLESS_KG = 1e-6
 
 # Moments of the two long links of the desk arm, kg m^2.
 LONG = (4e-5, 2e-4, 2e-4)
-# Joint; where it stands in the link before, m; its axis; its range, rad; its link's centre of mass,
-# m, mass, kg, and moments about the axes through it, kg m^2.
+# Joint; where it stands in the link before, m, and how it is turned about that link's first axis,
+# rad; its axis; its range, rad; its link's centre of mass, m, mass, kg, and moments about the axes
+# through it, kg m^2.
 DESK = [
-    ("pan", (0, 0, 0.06), (0, 0, 1), (-1.6, 1.6), (0.01, 0, 0.03), 0.12, (6e-5, 7e-5, 5e-5)),
-    ("lift", (0.03, 0, 0.055), (0, 1, 0), (-0.9, 1.1), (0.09, 0.01, 0.02), 0.11, LONG),
-    ("elbow", (0.113, 0, 0.028), (0, 1, 0), (-1.2, 1.2), (0.08, 0, 0.01), 0.1, LONG),
-    ("wrist", (0.135, 0, 0.005), (0, 1, 0), (-1.4, 1.4), (0.04, 0.01, 0), 0.09, (3e-5, 6e-5, 6e-5)),
-    ("roll", (0.061, 0, 0), (1, 0, 0), (-2.4, 2.4), (0.05, 0, 0.015), 0.12, (6e-5, 1e-4, 9e-5)),
+    ("pan", (0, 0, 0.06), 0, (0, 0, 1), (-1.6, 1.6), (0.01, 0, 0.03), 0.12, (6e-5, 7e-5, 5e-5)),
+    ("lift", (0.03, 0, 0.055), 0, (0, 1, 0), (-0.9, 1.1), (0.09, 0.01, 0.02), 0.11, LONG),
+    ("elbow", (0.113, 0, 0.028), 0, (0, 1, 0), (-1.2, 1.2), (0.08, 0, 0.01), 0.1, LONG),
+    ("wrist", (0.135, 0, 0.005), 0, (0, 1, 0), (-1.4, 1.4), (0.04, 0.01, 0), 0.09,
+     (3e-5, 6e-5, 6e-5)),
+    ("roll", (0.061, 0, 0), 0, (1, 0, 0), (-2.4, 2.4), (0.05, 0, 0.015), 0.12, (6e-5, 1e-4, 9e-5)),
 ]
+QUARTER = 1.5707963267948966
+Z = (0, 0, 1)
+# Like Franka Emika's Panda: its published axes and ranges (Franka Control Interface documentation,
+# Denavit-Hartenberg parameters), and masses and centres of mass near those that Gaz et al.
+# identified (IEEE Robotics and Automation Letters 4 (2019) 4147), rounded; moments are those of
+# rods of about the links' sizes. Ranges are halved, so that no link meets another.
+PANDA = [
+    ("joint1", (0, 0, 0.333), 0, Z, (-1.4, 1.4), (0, 0, -0.05), 4.97, (0.05, 0.05, 0.01)),
+    ("joint2", (0, 0, 0), -QUARTER, Z, (-0.9, 0.9), (0, -0.03, 0), 0.65, (0.01, 0.01, 0.01)),
+    ("joint3", (0, -0.316, 0), QUARTER, Z, (-1.4, 1.4), (0.03, 0.04, -0.07), 3.23,
+     (0.04, 0.04, 0.01)),
+    ("joint4", (0.0825, 0, 0), QUARTER, Z, (-2.3, -0.6), (-0.05, 0.1, 0.03), 3.59,
+     (0.03, 0.02, 0.03)),
+    ("joint5", (-0.0825, 0.384, 0), -QUARTER, Z, (-1.4, 1.4), (-0.01, 0.04, -0.04), 1.23,
+     (0.03, 0.03, 0.01)),
+    ("joint6", (0, 0, 0), QUARTER, Z, (0.5, 2.9), (0.06, -0.01, -0.01), 1.67,
+     (0.005, 0.005, 0.005)),
+    ("joint7", (0.088, 0, 0), QUARTER, Z, (-1.4, 1.4), (0.01, 0, 0.06), 0.74, (0.01, 0.01, 0.005)),
+]
+ARMS = {"desk": DESK, "panda": PANDA}
 
 
-def desk_urdf():
-    """A small desk arm: five joints about axes in three directions."""
-    lines = ['<robot name="desk_arm">', '<link name="base"/>']
-    for name, _, _, _, com, mass, (x, y, z) in DESK:
+def urdf_of(name):
+    """An arm of this name: "desk", five joints about axes in three directions, or "panda"."""
+    arm = ARMS[name]
+    lines = [f'<robot name="{name}_arm">', '<link name="base"/>']
+    for joint, _, _, _, _, com, mass, (x, y, z) in arm:
         lines += [
-            f'<link name="{name}_link"><inertial><origin xyz="{com[0]} {com[1]} {com[2]}"/>',
+            f'<link name="{joint}_link"><inertial><origin xyz="{com[0]} {com[1]} {com[2]}"/>',
             f'<mass value="{mass}"/><inertia ixx="{x}" iyy="{y}" izz="{z}" ixy="0" ixz="0"',
             'iyz="0"/></inertial></link>',
         ]
     before = "base"
-    for name, at, axis, (low, high), *_ in DESK:
+    for joint, at, roll, axis, (low, high), *_ in arm:
+        turned = f' rpy="{roll} 0 0"' if roll else ""
         lines += [
-            f'<joint name="{name}" type="revolute"><parent link="{before}"/>',
-            f'<child link="{name}_link"/><origin xyz="{at[0]} {at[1]} {at[2]}"/>',
+            f'<joint name="{joint}" type="revolute"><parent link="{before}"/>',
+            f'<child link="{joint}_link"/><origin xyz="{at[0]} {at[1]} {at[2]}"{turned}/>',
             f'<axis xyz="{axis[0]} {axis[1]} {axis[2]}"/>',
             f'<limit lower="{low}" upper="{high}" effort="10" velocity="10"/></joint>',
         ]
-        before = f"{name}_link"
+        before = f"{joint}_link"
     return "\n".join(lines + ["</robot>"]) + "\n"
 
 

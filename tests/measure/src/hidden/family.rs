@@ -37,18 +37,37 @@ pub enum Family {
     ApproximateHanging,
     /// The bench arm that hides nothing, whose file is a little wrong everywhere.
     NothingApproximate,
-    /// One effect at an arm in space of five joints.
+    /// One effect at a desk arm in space of five joints.
     Space,
     /// That arm, which hides nothing.
     NothingSpace,
+    /// One effect at the SO-101, of six joints.
+    So101,
+    /// That arm, which hides nothing.
+    NothingSo101,
+    /// One effect at an arm of seven joints like the Panda.
+    Panda,
+    /// That arm, which hides nothing.
+    NothingPanda,
     /// One effect at the virtual robot, hanging, recorded through the firmware's logic.
     Robot,
     /// That robot, which hides nothing.
     NothingRobot,
 }
 
+/// A robot in space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpaceArm {
+    /// Five joints, the scripts' own.
+    Desk,
+    /// The SO-101's URDF of `HANDSTAND_DATA`.
+    So101,
+    /// Seven joints, the scripts' own.
+    Panda,
+}
+
 /// All families, in the order of the tables.
-pub const FAMILIES: [Family; 17] = [
+pub const FAMILIES: [Family; 21] = [
     Family::Single,
     Family::Hanging,
     Family::Balancing,
@@ -64,6 +83,10 @@ pub const FAMILIES: [Family; 17] = [
     Family::NothingApproximate,
     Family::Space,
     Family::NothingSpace,
+    Family::So101,
+    Family::NothingSo101,
+    Family::Panda,
+    Family::NothingPanda,
     Family::Robot,
     Family::NothingRobot,
 ];
@@ -121,6 +144,10 @@ impl Family {
             Family::NothingApproximate => "nothing-approximate",
             Family::Space => "space",
             Family::NothingSpace => "nothing-space",
+            Family::So101 => "so101",
+            Family::NothingSo101 => "nothing-so101",
+            Family::Panda => "panda",
+            Family::NothingPanda => "nothing-panda",
             Family::Robot => "robot",
             Family::NothingRobot => "nothing-robot",
         }
@@ -151,6 +178,8 @@ impl Family {
                 | Family::NothingBalancing
                 | Family::NothingApproximate
                 | Family::NothingSpace
+                | Family::NothingSo101
+                | Family::NothingPanda
                 | Family::NothingRobot
         )
     }
@@ -171,9 +200,19 @@ impl Family {
         self.stated().is_some()
     }
 
-    /// Whether its rig is a robot in space, which MuJoCo alone makes.
+    /// Which robot in space its rig is, which MuJoCo alone makes.
+    pub fn arm(self) -> Option<SpaceArm> {
+        match self {
+            Family::Space | Family::NothingSpace => Some(SpaceArm::Desk),
+            Family::So101 | Family::NothingSo101 => Some(SpaceArm::So101),
+            Family::Panda | Family::NothingPanda => Some(SpaceArm::Panda),
+            _ => None,
+        }
+    }
+
+    /// Whether its rig is a robot in space.
     pub fn is_in_space(self) -> bool {
-        matches!(self, Family::Space | Family::NothingSpace)
+        self.arm().is_some()
     }
 
     /// Whether its logs are recordings of the virtual robot.
@@ -189,6 +228,8 @@ impl Family {
             | Family::Balancing
             | Family::Pairs
             | Family::Space
+            | Family::So101
+            | Family::Panda
             | Family::Approximate
             | Family::ApproximateFree => ("named, or in an equivalent set", 0.9),
             Family::Triples => ("named, or in an equivalent set", 0.75),
@@ -199,6 +240,8 @@ impl Family {
             | Family::NothingHanging
             | Family::NothingBalancing
             | Family::NothingSpace
+            | Family::NothingSo101
+            | Family::NothingPanda
             | Family::NothingRobot => ("nothing is said to be missing", 0.99),
             Family::Outside => ("unexplained", 0.95),
         };
@@ -255,7 +298,7 @@ impl Plan {
         }
         match family {
             Family::Robot => each(&kinds(self.truth)),
-            Family::Space => each(&IN_SPACE),
+            Family::Space | Family::So101 | Family::Panda => each(&IN_SPACE),
             Family::Approximate | Family::ApproximateFree | Family::ApproximateHanging => {
                 let mut kinds = kinds(self.truth);
                 kinds.retain(|kind| !OF_VALUES.contains(kind));
@@ -283,6 +326,8 @@ impl Plan {
             Family::NothingHanging
             | Family::NothingBalancing
             | Family::NothingSpace
+            | Family::NothingSo101
+            | Family::NothingPanda
             | Family::NothingRobot => seeds.map(|seed| case(Vec::new(), seed)).collect(),
         }
     }

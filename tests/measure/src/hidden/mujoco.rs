@@ -1,6 +1,7 @@
 //! The truth by MuJoCo: scripts that share nothing with the library.
 
 use super::case::{Case, Files, TruthFile};
+use super::family::SpaceArm;
 use handstand_xtask::program::run as succeeds;
 use handstand_xtask::root;
 use serde::de::DeserializeOwned;
@@ -62,22 +63,40 @@ pub(crate) fn run<Truth: DeserializeOwned>(
     serde_json::from_slice(&output.stdout).map_err(|error| format!("{script}: {error}"))
 }
 
+/// The SO-101's URDF of the public data; none where `HANDSTAND_DATA` is unset.
+pub fn so101() -> Option<PathBuf> {
+    let data = std::env::var_os("HANDSTAND_DATA")?;
+    Some(PathBuf::from(data).join("robots/so101/so101_new_calib.urdf"))
+}
+
+/// What tells the script which robot in space is meant.
+fn arm_words(arm: SpaceArm) -> Result<Vec<String>, String> {
+    let [option, robot] = match arm {
+        SpaceArm::Desk => ["--arm", "desk"].map(str::to_string),
+        SpaceArm::Panda => ["--arm", "panda"].map(str::to_string),
+        SpaceArm::So101 => {
+            let urdf = so101().ok_or("HANDSTAND_DATA is not set, which has the SO-101's URDF")?;
+            ["--urdf".to_string(), urdf.to_string_lossy().into_owned()]
+        }
+    };
+    Ok(vec![option, robot])
+}
+
 /// Runs the script of the case's rig.
 pub(super) fn write(case: &Case, dir: &Path) -> Result<Files, String> {
     let effects = match case.hidden.as_slice() {
         [] => "nothing".to_string(),
         kinds => kinds.join(","),
     };
-    let in_space = case.family.is_in_space();
-    let script = if in_space {
-        "hidden_space.py"
-    } else {
-        "hidden_mujoco.py"
+    let (script, rig) = match case.family.arm() {
+        Some(arm) => ("hidden_space.py", arm_words(arm)?),
+        None => {
+            let words = ["--motions", case.motions()];
+            ("hidden_mujoco.py", words.map(str::to_string).to_vec())
+        }
     };
     let mut words = vec!["--effects", &effects];
-    if !in_space {
-        words.extend(["--motions", case.motions()]);
-    }
+    words.extend(rig.iter().map(String::as_str));
     let truth: TruthFile = run(script, dir, case.seed, &words)?;
     let all = |names: &[String]| names.iter().map(|name| dir.join(name)).collect();
     Ok(Files {

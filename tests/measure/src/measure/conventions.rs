@@ -8,15 +8,13 @@ use super::page::Page;
 use comfy_table::Table;
 use handstand::output::table::plain_table;
 use handstand_measure::conventions::{ConventionCase, ConventionOutcome, try_convention};
-use handstand_measure::hidden::install_mujoco;
+use handstand_measure::hidden::{install_mujoco, so101};
 use handstand_measure::jobs::try_each;
 use handstand_measure::measured::Measured;
 use handstand_measure::spoiled::Answer;
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Where the arm's file lies in the folder of public data.
-const URDF: &str = "robots/so101/so101_new_calib.urdf";
 /// Least share found of what can be seen.
 const FOUND: f64 = 0.95;
 
@@ -41,14 +39,14 @@ pub struct Args {
 
 /// Whether the targets are met.
 pub fn run(args: &Args) -> bool {
-    let Some(data) = std::env::var_os("HANDSTAND_DATA").map(PathBuf::from) else {
+    let Some(urdf) = so101() else {
         eprintln!("HANDSTAND_DATA is unset: it must name the folder of the public data");
         return false;
     };
     if !install_mujoco() {
         return false;
     }
-    let (outcomes, failed) = outcomes(args, &data.join(URDF));
+    let (outcomes, failed) = outcomes(args, &urdf);
     let (spoiled, as_filed): (Vec<_>, Vec<_>) = outcomes
         .iter()
         .partition(|outcome| outcome.convention.is_some());

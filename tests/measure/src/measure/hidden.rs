@@ -235,7 +235,7 @@ const PAGES: [RigPage; 8] = [
         truth: Truth::Mujoco,
         files: Files::InSpace,
         name: "hidden-space",
-        title: "Hidden effects named, missed and invented: an arm of five joints in space",
+        title: "Hidden effects named, missed and invented: arms in space",
     },
     RigPage {
         truth: Truth::Robot,
