@@ -62,30 +62,48 @@ pub trait Reason: fmt::Debug + fmt::Display + Any + Send + Sync {
     fn remedy(&self) -> Cow<'_, str>;
 }
 
-/// A reason in words, without data to match on.
-#[derive(Debug)]
-struct PlainReason {
-    what: String,
-    remedy: String,
+/// What was found and what mends it, in words made where the condition is seen.
+///
+/// Whoever knows the place, or that the request is to blame, makes an [`Error`] of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// What was found, and why it is refused.
+    pub what: String,
+    /// What to do about it.
+    pub remedy: String,
 }
 
-impl fmt::Display for PlainReason {
+impl Problem {
+    /// `what` was found; `remedy` mends it.
+    pub fn new(what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Problem {
+            what: what.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// It was found in a file.
+    pub fn at(self, place: Place) -> Error {
+        Error::refused(place, self)
+    }
+
+    /// The request is to blame.
+    pub fn usage(self) -> Error {
+        Error::Usage(Box::new(self))
+    }
+}
+
+impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.what)
     }
 }
 
-impl Reason for PlainReason {
+impl std::error::Error for Problem {}
+
+impl Reason for Problem {
     fn remedy(&self) -> Cow<'_, str> {
         Cow::Borrowed(&self.remedy)
-    }
-}
-
-/// A reason in words alone.
-pub fn words(what: impl Into<String>, remedy: impl Into<String>) -> impl Reason {
-    PlainReason {
-        what: what.into(),
-        remedy: remedy.into(),
     }
 }
 
@@ -125,7 +143,7 @@ pub enum Error {
 impl Error {
     /// A file's content is refused: `what` was found at `place`; `remedy` mends it.
     pub fn data(place: Place, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::refused(place, words(what, remedy))
+        Error::refused(place, Problem::new(what, remedy))
     }
 
     /// A file's content is refused for a reason that callers can match on.
@@ -138,17 +156,17 @@ impl Error {
 
     /// The request makes no sense.
     pub fn usage(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Usage(Box::new(words(what, remedy)))
+        Error::Usage(Box::new(Problem::new(what, remedy)))
     }
 
     /// No design follows from what was given: `what` stands in the way.
     pub fn design(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Design(Box::new(words(what, remedy)))
+        Error::Design(Box::new(Problem::new(what, remedy)))
     }
 
     /// A device failed or fell silent.
     pub fn device(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Device(Box::new(words(what, remedy)))
+        Error::Device(Box::new(Problem::new(what, remedy)))
     }
 
     /// The system refused `action` on `path`.

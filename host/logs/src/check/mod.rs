@@ -25,7 +25,7 @@ use super::bam::BamBench;
 use super::cut::{Cut, cut};
 use super::expanded;
 use super::request::LogRequest;
-use crate::error::{Place, Result, words};
+use crate::error::{Place, Problem, Result};
 use crate::model::Model;
 use excitation::ExcitationCheck;
 use finding::Findings;
@@ -115,7 +115,7 @@ fn judge(
             None if lacks_column => {}
             None => {
                 let remedy = "see the rows refused, or record again";
-                let reason = words("no sample could be read", remedy);
+                let reason = Problem::new("no sample could be read", remedy);
                 findings.refuse("none", file.place(), &reason);
             }
         }
