@@ -133,8 +133,13 @@ pub enum Error {
         refusal: std::io::Error,
     },
     /// Model, weights and timing are well formed, but no design follows from them.
-    #[error("{}", readable(.0))]
-    Design(Box<dyn Reason>),
+    #[error("{}", readable(problem))]
+    Design {
+        /// What stands in the way.
+        problem: Problem,
+        /// Whether it lies in the request's own numbers, whatever the model is.
+        in_request: bool,
+    },
     /// A device (serial port, servo) failed or fell silent.
     #[error("{}", readable(.0))]
     Device(Box<dyn Reason>),
@@ -161,7 +166,10 @@ impl Error {
 
     /// No design follows from what was given: `what` stands in the way.
     pub fn design(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Design(Box::new(Problem::new(what, remedy)))
+        Error::Design {
+            problem: Problem::new(what, remedy),
+            in_request: false,
+        }
     }
 
     /// A device failed or fell silent.
@@ -185,17 +193,17 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Usage(_) => 2,
-            Error::Data { .. } | Error::Design(_) | Error::File { .. } => 3,
+            Error::Data { .. } | Error::Design { .. } | Error::File { .. } => 3,
             Error::Device(_) => 4,
         }
     }
 
     fn any_reason(&self) -> Option<&dyn Reason> {
         match self {
-            Error::Usage(reason)
-            | Error::Data { reason, .. }
-            | Error::Design(reason)
-            | Error::Device(reason) => Some(&**reason),
+            Error::Usage(reason) | Error::Data { reason, .. } | Error::Device(reason) => {
+                Some(&**reason)
+            }
+            Error::Design { problem, .. } => Some(problem),
             Error::File { .. } => None,
         }
     }

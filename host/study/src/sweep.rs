@@ -67,7 +67,7 @@ pub fn sweep(
         (levels.set)(&mut case, level);
         let (figures, refused) = match at_level(&case, judging) {
             Ok(figures) => (Some(figures), None),
-            Err(Error::Design(reason)) => (None, Some(reason.to_string())),
+            Err(Error::Design { problem, .. }) => (None, Some(problem.what)),
             Err(error) => return Err(error),
         };
         done();

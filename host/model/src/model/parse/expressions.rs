@@ -3,10 +3,8 @@
 use super::super::reader::Table;
 use super::EITHER_SIGN;
 use crate::effects::Effect;
-use crate::effects::expression::{
-    DefinitionFault, ExpressionReason, LawDefinition, LawParameter, LawSite, effect,
-};
-use crate::error::Result;
+use crate::effects::expression::{DefinitionFault, LawDefinition, LawParameter, LawSite, effect};
+use crate::error::{Problem, Result};
 
 pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
     let mut laws: Vec<Effect> = Vec::new();
@@ -27,7 +25,13 @@ fn law(table: &Table) -> Result<Effect> {
     let site = match LawSite::ALL.into_iter().filter(given).collect::<Vec<_>>()[..] {
         [site] => site,
         [] => LawSite::Torque,
-        _ => return Err(table.bad("friction", ExpressionReason::TwoSites)),
+        _ => {
+            let problem = Problem::new(
+                "`torque` and `friction` in one law",
+                "write two [[expression]] tables, each with its own name",
+            );
+            return Err(table.bad("friction", problem));
+        }
     };
     let parameters = table.tables("parameter")?;
     let definition = LawDefinition {
@@ -38,10 +42,10 @@ fn law(table: &Table) -> Result<Effect> {
         slides: true,
     };
     effect(&definition).map_err(|fault| match fault {
-        DefinitionFault::Name(reason) => table.bad("name", reason),
-        DefinitionFault::Parameter(index, reason) => parameters[index].bad("key", reason),
+        DefinitionFault::Name(problem) => table.bad("name", problem),
+        DefinitionFault::Parameter(index, problem) => parameters[index].bad("key", problem),
         DefinitionFault::Expression(misplaced) => {
-            table.bad_character(site.key(), misplaced.at, misplaced.reason)
+            table.bad_character(site.key(), misplaced.at, misplaced.problem)
         }
     })
 }
