@@ -89,7 +89,7 @@ impl Problem {
 
     /// The request is to blame.
     pub fn usage(self) -> Error {
-        Error::Usage(Box::new(self))
+        Error::Usage(self)
     }
 }
 
@@ -112,7 +112,7 @@ impl Reason for Problem {
 pub enum Error {
     /// The command line asks for something that makes no sense.
     #[error("{}", readable(.0))]
-    Usage(Box<dyn Reason>),
+    Usage(Problem),
     /// A file's content is refused.
     #[error("{place}: {}", readable(reason))]
     Data {
@@ -142,7 +142,7 @@ pub enum Error {
     },
     /// A device (serial port, servo) failed or fell silent.
     #[error("{}", readable(.0))]
-    Device(Box<dyn Reason>),
+    Device(Problem),
 }
 
 impl Error {
@@ -161,7 +161,7 @@ impl Error {
 
     /// The request makes no sense.
     pub fn usage(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Usage(Box::new(Problem::new(what, remedy)))
+        Error::Usage(Problem::new(what, remedy))
     }
 
     /// No design follows from what was given: `what` stands in the way.
@@ -174,7 +174,7 @@ impl Error {
 
     /// A device failed or fell silent.
     pub fn device(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Device(Box::new(Problem::new(what, remedy)))
+        Error::Device(Problem::new(what, remedy))
     }
 
     /// The system refused `action` on `path`.
@@ -200,10 +200,10 @@ impl Error {
 
     fn any_reason(&self) -> Option<&dyn Reason> {
         match self {
-            Error::Usage(reason) | Error::Data { reason, .. } | Error::Device(reason) => {
-                Some(&**reason)
+            Error::Usage(problem) | Error::Design { problem, .. } | Error::Device(problem) => {
+                Some(problem)
             }
-            Error::Design { problem, .. } => Some(problem),
+            Error::Data { reason, .. } => Some(&**reason),
             Error::File { .. } => None,
         }
     }

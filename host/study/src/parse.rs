@@ -7,7 +7,7 @@ use super::case::Case;
 use super::judge::Judging;
 use super::quantities::QUANTITIES;
 use super::quantity::{Distribution, SpreadOver, Uncertain, quantity};
-use crate::error::{Error, Problem, Result};
+use crate::error::{Error, Result};
 use crate::model::Limits;
 use crate::model::Model;
 use crate::model::reader::Table;
@@ -198,7 +198,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
             .filter(|quantity| quantity.spread.is_some());
         let known: Vec<&str> = uncertain.map(|quantity| quantity.id).collect();
         let found = format!("nothing called `{what}` can be uncertain");
-        return Err(table.bad("what", Problem::new(found, suggest(what, &known))));
+        return Err(table.bad("what", found, suggest(what, &known)));
     };
     let kinds = [
         ("uniform", Distribution::Uniform),
@@ -213,7 +213,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
         (SpreadOver::Whole, None) => vec![None],
         (SpreadOver::Whole, Some(_)) => {
             let found = format!("`{what}` belongs to the whole robot");
-            return Err(table.bad("link", Problem::new(found, "leave `link` out")));
+            return Err(table.bad("link", found, "leave `link` out"));
         }
         (SpreadOver::Link, Some(link)) => vec![Some(link)],
         (SpreadOver::Link, None) => (0..links).map(Some).collect(),
@@ -228,7 +228,7 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
         };
         if all.iter().any(|other| other.column() == new.column()) {
             let found = format!("{} is drawn twice", new.column());
-            return Err(table.bad("what", Problem::new(found, "say it once")));
+            return Err(table.bad("what", found, "say it once"));
         }
         all.push(new);
     }

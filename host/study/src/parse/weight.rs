@@ -1,6 +1,6 @@
 //! Weights in a study's file: a number, a diagonal, or a matrix.
 
-use crate::error::{Problem, Result};
+use crate::error::Result;
 use crate::model::Limits;
 use crate::model::reader::Table;
 use crate::synth::Weight;
@@ -28,11 +28,8 @@ pub(super) fn weight(
         _ => {
             return Err(table.bad(
                 key,
-                Problem::new(
-                    format!("`{key}` is no square matrix"),
-                    "give a number, a diagonal such as [100, 100, 1, 1], or as many rows as \
-                     columns",
-                ),
+                format!("`{key}` is no square matrix"),
+                "give a number, a diagonal such as [100, 100, 1, 1], or as many rows as columns",
             ));
         }
     }))

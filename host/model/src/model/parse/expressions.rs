@@ -2,9 +2,10 @@
 
 use super::super::reader::Table;
 use super::EITHER_SIGN;
+use super::effects::effect_twice;
 use crate::effects::Effect;
 use crate::effects::expression::{DefinitionFault, LawDefinition, LawParameter, LawSite, effect};
-use crate::error::{Problem, Result};
+use crate::error::Result;
 
 pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
     let mut laws: Vec<Effect> = Vec::new();
@@ -12,7 +13,7 @@ pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
         let law = law(&table)?;
         let id = law.info().id;
         if laws.iter().any(|other| other.info().id == id) {
-            return Err(table.bad("name", super::super::ModelReason::EffectTwice { id }));
+            return Err(effect_twice(&table, "name", id));
         }
         laws.push(law);
     }
@@ -26,11 +27,11 @@ fn law(table: &Table) -> Result<Effect> {
         [site] => site,
         [] => LawSite::Torque,
         _ => {
-            let problem = Problem::new(
+            return Err(table.bad(
+                "friction",
                 "`torque` and `friction` in one law",
                 "write two [[expression]] tables, each with its own name",
-            );
-            return Err(table.bad("friction", problem));
+            ));
         }
     };
     let parameters = table.tables("parameter")?;
@@ -42,10 +43,11 @@ fn law(table: &Table) -> Result<Effect> {
         slides: true,
     };
     effect(&definition).map_err(|fault| match fault {
-        DefinitionFault::Name(problem) => table.bad("name", problem),
-        DefinitionFault::Parameter(index, problem) => parameters[index].bad("key", problem),
+        DefinitionFault::Name(problem) => problem.at(table.place_of("name")),
+        DefinitionFault::Parameter(index, problem) => problem.at(parameters[index].place_of("key")),
         DefinitionFault::Expression(misplaced) => {
-            table.bad_character(site.key(), misplaced.at, misplaced.problem)
+            let place = table.place_of_character(site.key(), misplaced.at);
+            misplaced.problem.at(place)
         }
     })
 }
