@@ -7,10 +7,9 @@
 use super::format::LogFormat;
 use super::read::LEAST_ROWS;
 use super::reading_limit::LARGEST_READING;
-use super::reason::LogReason;
 use super::request::LogRequest;
 use super::table::{LogTable, TableFile};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Problem, Result};
 use crate::model::{Column, Dimension, JointColumns, LogColumns, RateSensor};
 use crate::output::number::hex;
 use crate::output::shortened;
@@ -143,26 +142,36 @@ fn read_of(
     let path = &request.path;
     let log: Value = serde_json::from_slice(bytes).map_err(|error| {
         let place = Place::at(path, error.line().max(1), error.column().max(1));
-        let message = error.to_string();
-        Error::refused(place, LogReason::NotJson { message })
+        Error::data(
+            place,
+            format!("not JSON: {error}"),
+            "was the recording broken off? Record again, or export CSV",
+        )
     })?;
-    let refuse = |reason| Error::refused(Place::file(path), reason);
+    let file = TableFile { path };
     let figures = BenchFigures::of(&log);
     let payload_kg = match columns {
-        Some(columns) => payload_kg(&log, figures, columns).map_err(refuse)?,
+        Some(columns) => {
+            payload_kg(&log, figures, columns).map_err(|problem| problem.at(Place::file(path)))?
+        }
         None => 0.0,
     };
-    bench.check(&log, &request.name()).map_err(refuse)?;
+    bench.check(&log, request)?;
     let all = log.get("entries").and_then(Value::as_array);
-    let all = all.ok_or_else(|| refuse(LogReason::NoEntries))?;
+    let all = all.ok_or_else(|| {
+        file.wrong(
+            "no list 'entries'",
+            "a BAM log is an object with a list 'entries'; save the records of other JSON as \
+             CSV, in Python: pandas.read_json(\"log.json\").to_csv(\"log.csv\", index=False)",
+        )
+    })?;
     let entries = all.len();
     let (first, last) = request.rows.unwrap_or((0, entries.saturating_sub(1)));
     if first >= entries || last >= entries || last - first + 1 < LEAST_ROWS {
-        return Err(refuse(LogReason::EntryRange {
-            first,
-            last,
-            entries,
-        }));
+        return Err(file.wrong(
+            format!("entries {first}-{last} of {entries}; at least {LEAST_ROWS} are needed"),
+            "entries count from 0; record longer if there are too few",
+        ));
     }
     let entries = Entries {
         path,
@@ -171,11 +180,15 @@ fn read_of(
     };
     let time_s = entries.numbers(TIME)?;
     if let Some(late) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(refuse(LogReason::EntryTime {
-            entry: first + late + 1,
-            time_s: time_s[late + 1],
-            previous_s: time_s[late],
-        }));
+        return Err(file.wrong(
+            format!(
+                "entry {}, timestamp: time does not increase: {} s after {} s",
+                first + late + 1,
+                time_s[late + 1],
+                time_s[late]
+            ),
+            "ask for a range of entries without the step, such as log.json:0-99",
+        ));
     }
     let mut table = LogTable {
         constants: vec![(PAYLOAD.to_string(), payload_kg, 1)],
@@ -206,15 +219,19 @@ fn payload_kg(
     log: &Value,
     figures: Option<BenchFigures>,
     columns: &LogColumns,
-) -> Result<f64, LogReason> {
+) -> Result<f64, Problem> {
     let payload_kg = columns.payload.as_ref().map(|payload| {
         let value = log.get(&payload.name).and_then(Value::as_f64);
         let value = value.filter(|value| value.is_finite() && *value >= 0.0);
-        value
-            .map(|value| payload.to_si(value))
-            .ok_or(LogReason::NoFact {
-                key: payload.name.clone(),
-            })
+        value.map(|value| payload.to_si(value)).ok_or_else(|| {
+            Problem::new(
+                format!(
+                    "no number '{}' beside the entries, which the model's payload is",
+                    shortened(&payload.name)
+                ),
+                "payload = { column = \"mass\", unit = \"kg\", at_m = LENGTH } is the key of BAM",
+            )
+        })
     });
     let payload_kg = payload_kg.transpose()?;
     let (Some(arm), Some(bench)) = (columns.arm, figures) else {
@@ -245,12 +262,14 @@ fn payload_kg(
     let said = compared.into_iter().filter(|(_, found, ..)| *found > 0.0);
     for (quantity, found, expected, unit) in said {
         if (found - expected).abs() > TOLERANCE * expected {
-            return Err(LogReason::OtherRig {
-                quantity,
-                found,
-                expected,
-                unit,
-            });
+            return Err(Problem::new(
+                format!(
+                    "the log's {quantity} is {found:.4} {unit}, the model has {expected:.4} {unit}"
+                ),
+                "mend the model's link; logs of several weights fit one model whose link is the \
+                 arm alone, with payload = { column = \"mass\", unit = \"kg\", at_m = LENGTH } in \
+                 its [log]",
+            ));
         }
     }
     Ok(payload_kg.unwrap_or(0.0))
@@ -258,19 +277,16 @@ fn payload_kg(
 
 impl BamBench {
     /// Holds a log's gain against those of the logs before.
-    fn check(&mut self, log: &Value, name: &str) -> Result<(), LogReason> {
+    fn check(&mut self, log: &Value, request: &LogRequest) -> Result<()> {
         let number = |key: &str| log.get(key).and_then(Value::as_f64);
         match (number("kp"), &self.kp) {
-            (Some(found), Some((first, expected))) if found != *expected => {
-                let (expected, first) = (*expected, first.clone());
-                Err(LogReason::OtherGain {
-                    found,
-                    expected,
-                    first,
-                })
-            }
+            (Some(found), Some((first, expected))) if found != *expected => Err(Error::data(
+                Place::file(&request.path),
+                format!("kp is {found}, and {expected} in {first}"),
+                "give the logs of one gain together: a model's drive has one gain",
+            )),
             (Some(kp), None) => {
-                self.kp = Some((name.to_string(), kp));
+                self.kp = Some((request.name(), kp));
                 Ok(())
             }
             _ => Ok(()),
@@ -355,18 +371,19 @@ impl Entries<'_> {
         index: usize,
         key: &'static str,
         value: Option<&Value>,
-        expected: &'static str,
+        expected: &str,
     ) -> Error {
         let found = value.map_or("nothing".to_string(), |value| {
             shortened(&value.to_string()).into_owned()
         });
-        let reason = LogReason::WrongEntry {
-            entry: self.first + index,
-            key,
-            found,
-            expected,
-        };
-        Error::refused(Place::file(self.path), reason)
+        Error::data(
+            Place::file(self.path),
+            format!(
+                "entry {}, {key}: {found} is not {expected}",
+                self.first + index
+            ),
+            "leave the entry out by a range such as log.json:0-99, or record again",
+        )
     }
 }
 

@@ -1,7 +1,6 @@
 //! Errors of the whole crate: place, what was found there, exit code and remedy.
 
 use crate::output::readable;
-use std::any::Any;
 use std::borrow::Cow;
 use std::fmt;
 use std::io::ErrorKind;
@@ -54,14 +53,6 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong, as data to match on: each module has a small enum of its own.
-///
-/// `Display` is the sentence that people read: what was found, and why it is refused.
-pub trait Reason: fmt::Debug + fmt::Display + Any + Send + Sync {
-    /// What to do about it.
-    fn remedy(&self) -> Cow<'_, str>;
-}
-
 /// What was found and what mends it, in words made where the condition is seen.
 ///
 /// Whoever knows the place, or that the request is to blame, makes an [`Error`] of it.
@@ -84,7 +75,10 @@ impl Problem {
 
     /// It was found in a file.
     pub fn at(self, place: Place) -> Error {
-        Error::refused(place, self)
+        Error::Data {
+            place,
+            problem: self,
+        }
     }
 
     /// The request is to blame.
@@ -101,12 +95,6 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
-impl Reason for Problem {
-    fn remedy(&self) -> Cow<'_, str> {
-        Cow::Borrowed(&self.remedy)
-    }
-}
-
 /// An error with everything its reader needs to mend it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -114,12 +102,12 @@ pub enum Error {
     #[error("{}", readable(.0))]
     Usage(Problem),
     /// A file's content is refused.
-    #[error("{place}: {}", readable(reason))]
+    #[error("{place}: {}", readable(problem))]
     Data {
         /// File, line and column.
         place: Place,
         /// What was found there.
-        reason: Box<dyn Reason>,
+        problem: Problem,
     },
     /// The operating system refused a file.
     #[error("{path}: cannot {action}: {refusal}", path = path.display())]
@@ -148,15 +136,7 @@ pub enum Error {
 impl Error {
     /// A file's content is refused: `what` was found at `place`; `remedy` mends it.
     pub fn data(place: Place, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::refused(place, Problem::new(what, remedy))
-    }
-
-    /// A file's content is refused for a reason that callers can match on.
-    pub fn refused(place: Place, reason: impl Reason) -> Self {
-        Error::Data {
-            place,
-            reason: Box::new(reason),
-        }
+        Problem::new(what, remedy).at(place)
     }
 
     /// The request makes no sense.
@@ -198,22 +178,6 @@ impl Error {
         }
     }
 
-    fn any_reason(&self) -> Option<&dyn Reason> {
-        match self {
-            Error::Usage(problem) | Error::Design { problem, .. } | Error::Device(problem) => {
-                Some(problem)
-            }
-            Error::Data { reason, .. } => Some(&**reason),
-            Error::File { .. } => None,
-        }
-    }
-
-    /// What is wrong as the data of one module, such as `model::TomlReason`;
-    /// `None` if the reason is of another kind.
-    pub fn reason<T: Reason>(&self) -> Option<&T> {
-        (self.any_reason()? as &dyn Any).downcast_ref()
-    }
-
     /// What the reader can do about it, if anything is known.
     pub fn remedy(&self) -> Option<Cow<'_, str>> {
         match self {
@@ -222,9 +186,10 @@ impl Error {
                 action,
                 refusal,
             } => of_system(path, action, refusal.kind()),
-            _ => self
-                .any_reason()
-                .map(|reason| readable(reason.remedy()).into()),
+            Error::Usage(problem)
+            | Error::Data { problem, .. }
+            | Error::Design { problem, .. }
+            | Error::Device(problem) => Some(readable(&problem.remedy).into()),
         }
     }
 }

@@ -208,7 +208,8 @@ fn named(
     };
     match error {
         DesignError::Mode(stuck) => {
-            DesignError::Mode(stuck.of_states(&states(model, &[], integral, 0), ts_s))
+            let states = states(model, &[], integral, 0);
+            stuck.of_states(&states, ts_s).into()
         }
         error => error,
     }
@@ -262,7 +263,7 @@ fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64, sums: bool) ->
                 && controllability(&plant.a, &plant.b).is_ok_and(|it| it.is_full()) =>
         {
             let fastest = poles(&plant.a).map_or(0.0, |poles| largest(&poles));
-            DesignError::Mode(stuck.lost_by_sampling(ts_s, fastest * ts_s > 1.0))
+            stuck.lost_by_sampling(ts_s, fastest * ts_s > 1.0).into()
         }
         error => error,
     }

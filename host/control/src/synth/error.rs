@@ -14,7 +14,7 @@ pub enum DesignError {
     /// Model, weights and timing together.
     Model(Problem),
     /// A mode of the plant, which gets the name of its state where that is known.
-    Mode(StuckMode),
+    Mode(Box<StuckMode>),
     /// Gains exist, and no longer stabilise in fixed point.
     Rounded(Problem),
 }

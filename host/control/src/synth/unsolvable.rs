@@ -88,6 +88,12 @@ impl StuckMode {
     }
 }
 
+impl From<StuckMode> for DesignError {
+    fn from(stuck: StuckMode) -> DesignError {
+        DesignError::Mode(Box::new(stuck))
+    }
+}
+
 impl PlantMode {
     /// What mends a mode that outgrows the samples.
     fn sampled_too_slowly(&self) -> Option<String> {
@@ -152,12 +158,12 @@ impl riccati::Problem<'_> {
             Err(error) => return error,
         };
         if let Some(mode) = weakest_driven.clone().filter(immovable) {
-            return DesignError::Mode(unreached(mode, role));
+            return unreached(mode, role).into();
         }
         if let Ok(modes) = modes(&self.a.transpose(), self.q)
             && let Some(mode) = weakest(modes, &marginal).filter(immovable)
         {
-            return DesignError::Mode(unweighted(mode, role));
+            return unweighted(mode, role).into();
         }
         no_solution(weakest_driven)
     }
@@ -207,10 +213,11 @@ fn no_solution(weakest: Option<PlantMode>) -> DesignError {
         " is the hardest to control, {:.1e} from impossible",
         mode.mode.margin
     );
-    DesignError::Mode(StuckMode {
+    let stuck = StuckMode {
         is_unreached: false,
         said: [format!("{found}; "), behind],
         remedy: mode.sampled_too_slowly().unwrap_or_else(|| remedy.into()),
         mode,
-    })
+    };
+    stuck.into()
 }
