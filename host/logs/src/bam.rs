@@ -9,13 +9,12 @@ use super::read::LEAST_ROWS;
 use super::reading_limit::LARGEST_READING;
 use super::request::LogRequest;
 use super::table::{LogTable, TableFile};
-use crate::error::{Error, Place, Problem, Result};
+use crate::error::{Error, Place, Result};
 use crate::model::{Column, Dimension, JointColumns, LogColumns, RateSensor};
 use crate::output::number::hex;
 use crate::output::shortened;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::path::Path;
 
 /// How far a bench's mass, moment and length may lie off the model's, as a share: a model's link
 /// counts the arm and what was fitted, the bench its weight.
@@ -74,13 +73,14 @@ pub(super) fn read(
     columns: &LogColumns,
     bench: &mut BamBench,
 ) -> Result<(LogTable, LogColumns)> {
-    let bytes = LogTable::bytes(&request.path, LogFormat::Bam)?;
+    let path = &request.path;
+    let file = TableFile { path };
+    let bytes = LogTable::bytes(path, LogFormat::Bam)?;
     let mut table = read_of(&bytes, request, Some(columns), bench)?;
     table.sha256 = hex(Sha256::digest(&bytes));
     let joints = columns.joints.len();
     if joints != 1 {
-        return Err(Error::data(
-            Place::file(&request.path),
+        return Err(file.wrong(
             format!("a log of BAM is of one joint, the model of {joints}"),
             "give it with the model of its bench's arm",
         ));
@@ -151,50 +151,17 @@ fn read_of(
     let file = TableFile { path };
     let figures = BenchFigures::of(&log);
     let payload_kg = match columns {
-        Some(columns) => {
-            payload_kg(&log, figures, columns).map_err(|problem| problem.at(Place::file(path)))?
-        }
+        Some(columns) => payload_kg(&log, file, figures, columns)?,
         None => 0.0,
     };
     bench.check(&log, request)?;
-    let all = log.get("entries").and_then(Value::as_array);
-    let all = all.ok_or_else(|| {
-        file.wrong(
-            "no list 'entries'",
-            "a BAM log is an object with a list 'entries'; save the records of other JSON as \
-             CSV, in Python: pandas.read_json(\"log.json\").to_csv(\"log.csv\", index=False)",
-        )
-    })?;
-    let entries = all.len();
-    let (first, last) = request.rows.unwrap_or((0, entries.saturating_sub(1)));
-    if first >= entries || last >= entries || last - first + 1 < LEAST_ROWS {
-        return Err(file.wrong(
-            format!("entries {first}-{last} of {entries}; at least {LEAST_ROWS} are needed"),
-            "entries count from 0; record longer if there are too few",
-        ));
-    }
-    let entries = Entries {
-        path,
-        list: &all[first..=last],
-        first,
-    };
-    let time_s = entries.numbers(TIME)?;
-    if let Some(late) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(file.wrong(
-            format!(
-                "entry {}, timestamp: time does not increase: {} s after {} s",
-                first + late + 1,
-                time_s[late + 1],
-                time_s[late]
-            ),
-            "ask for a range of entries without the step, such as log.json:0-99",
-        ));
-    }
+    let entries = Entries::of(&log, request, file)?;
+    let time_s = entries.times_s()?;
     let mut table = LogTable {
         constants: vec![(PAYLOAD.to_string(), payload_kg, 1)],
         is_si: true,
         bench: figures,
-        first,
+        first: entries.first,
         is_entries: true,
         ..LogTable::default()
     };
@@ -217,14 +184,15 @@ fn read_of(
 /// The payload of a log, kg, once its figures agree with the model's.
 fn payload_kg(
     log: &Value,
+    file: TableFile,
     figures: Option<BenchFigures>,
     columns: &LogColumns,
-) -> Result<f64, Problem> {
+) -> Result<f64> {
     let payload_kg = columns.payload.as_ref().map(|payload| {
         let value = log.get(&payload.name).and_then(Value::as_f64);
         let value = value.filter(|value| value.is_finite() && *value >= 0.0);
         value.map(|value| payload.to_si(value)).ok_or_else(|| {
-            Problem::new(
+            file.wrong(
                 format!(
                     "no number '{}' beside the entries, which the model's payload is",
                     shortened(&payload.name)
@@ -262,7 +230,7 @@ fn payload_kg(
     let said = compared.into_iter().filter(|(_, found, ..)| *found > 0.0);
     for (quantity, found, expected, unit) in said {
         if (found - expected).abs() > TOLERANCE * expected {
-            return Err(Problem::new(
+            return Err(file.wrong(
                 format!(
                     "the log's {quantity} is {found:.4} {unit}, the model has {expected:.4} {unit}"
                 ),
@@ -280,27 +248,66 @@ impl BamBench {
     fn check(&mut self, log: &Value, request: &LogRequest) -> Result<()> {
         let number = |key: &str| log.get(key).and_then(Value::as_f64);
         match (number("kp"), &self.kp) {
-            (Some(found), Some((first, expected))) if found != *expected => Err(Error::data(
-                Place::file(&request.path),
-                format!("kp is {found}, and {expected} in {first}"),
-                "give the logs of one gain together: a model's drive has one gain",
-            )),
-            (Some(kp), None) => {
-                self.kp = Some((request.name(), kp));
-                Ok(())
+            (Some(found), Some((first, expected))) if found != *expected => {
+                return Err(Error::data(
+                    Place::file(&request.path),
+                    format!("kp is {found}, and {expected} in {first}"),
+                    "give the logs of one gain together: a model's drive has one gain",
+                ));
             }
-            _ => Ok(()),
+            (Some(kp), None) => self.kp = Some((request.name(), kp)),
+            _ => {}
         }
+        Ok(())
     }
 }
 
 struct Entries<'a> {
-    path: &'a Path,
+    file: TableFile<'a>,
     list: &'a [Value],
     first: usize,
 }
 
 impl Entries<'_> {
+    /// Those asked for.
+    fn of<'a>(log: &'a Value, request: &LogRequest, file: TableFile<'a>) -> Result<Entries<'a>> {
+        let all = log.get("entries").and_then(Value::as_array);
+        let all = all.ok_or_else(|| {
+            file.wrong(
+                "no list 'entries'",
+                "a BAM log is an object with a list 'entries'; save the records of other JSON as \
+                 CSV, in Python: pandas.read_json(\"log.json\").to_csv(\"log.csv\", index=False)",
+            )
+        })?;
+        let entries = all.len();
+        let (first, last) = request.rows.unwrap_or((0, entries.saturating_sub(1)));
+        if first >= entries || last >= entries || last - first + 1 < LEAST_ROWS {
+            return Err(file.wrong(
+                format!("entries {first}-{last} of {entries}; at least {LEAST_ROWS} are needed"),
+                "entries count from 0; record longer if there are too few",
+            ));
+        }
+        let list = &all[first..=last];
+        Ok(Entries { file, list, first })
+    }
+
+    /// Times, which increase, s.
+    fn times_s(&self) -> Result<Vec<f64>> {
+        let time_s = self.numbers(TIME)?;
+        match time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
+            None => Ok(time_s),
+            Some(late) => Err(self.file.wrong(
+                format!(
+                    "entry {}, timestamp: time does not increase: {} s after {} s",
+                    self.first + late + 1,
+                    time_s[late + 1],
+                    time_s[late]
+                ),
+                "ask for a range of entries without the step, such as log.json:0-99",
+            )),
+        }
+    }
+
     fn numbers(&self, key: &'static str) -> Result<Vec<f64>> {
         let numbered = self.list.iter().enumerate();
         numbered
@@ -376,8 +383,7 @@ impl Entries<'_> {
         let found = value.map_or("nothing".to_string(), |value| {
             shortened(&value.to_string()).into_owned()
         });
-        Error::data(
-            Place::file(self.path),
+        self.file.wrong(
             format!(
                 "entry {}, {key}: {found} is not {expected}",
                 self.first + index

@@ -60,7 +60,8 @@ impl Design {
         if loss.radius_fixed >= 1.0 {
             return Err(DesignError::Rounded(Problem::new(
                 format!(
-                    "rounded to {} bits the gains no longer stabilise: the spectral radius is {:.6}",
+                    "rounded to {} bits the gains no longer stabilise: the spectral radius is \
+                     {:.6}",
                     law.bits, loss.radius_fixed
                 ),
                 "declare smaller ranges: steps and gains are rounded to what they need",

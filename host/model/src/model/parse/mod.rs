@@ -43,6 +43,17 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     model_of(text, file, None)
 }
 
+const TABLES: [&str; 8] = [
+    "rig",
+    "link",
+    "joint",
+    "expression",
+    "effect",
+    "fit",
+    "uncertainty",
+    "log",
+];
+
 /// Reads a model whose robot is this text, not what is in the robot's file.
 ///
 /// # Errors
@@ -51,16 +62,7 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
     let source = TomlSource { text, file };
     let document = source.document()?;
     let root = Table::root(&source, &document);
-    root.only(&[
-        "rig",
-        "link",
-        "joint",
-        "expression",
-        "effect",
-        "fit",
-        "uncertainty",
-        "log",
-    ])?;
+    root.only(&TABLES)?;
 
     let rig = root.required_table("rig")?;
     let robot = Robot::read(&rig, file, robot)?;
@@ -113,13 +115,7 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
         uncertain: Vec::new(),
         log,
     };
-    if model.slides() && model.angles == Angles::Absolute {
-        return Err(rig.bad(
-            "angles",
-            "the model has joints that slide, and angles from the world",
-            "write `angles = \"relative\"`: each from the link before",
-        ));
-    }
+    slides_are_relative(&rig, &model)?;
     in_space::check(&root, &model)?;
     (model.free, model.bounds) = fit::read(&root, &model)?;
     model.uncertain = uncertainty::read(&root, &model)?;
@@ -130,6 +126,17 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
         }
     }
     Ok(model)
+}
+
+fn slides_are_relative(rig: &Table, model: &Model) -> Result<()> {
+    if model.slides() && model.angles == Angles::Absolute {
+        return Err(rig.bad(
+            "angles",
+            "the model has joints that slide, and angles from the world",
+            "write `angles = \"relative\"`: each from the link before",
+        ));
+    }
+    Ok(())
 }
 
 const ANGLE_ZERO: [(&str, AngleZero); 3] = [
