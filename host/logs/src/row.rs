@@ -104,7 +104,7 @@ impl LogRow {
                 problem,
             });
         };
-        let (now, before) = (short(time_s), short(previous_s));
+        let times = || (short(time_s), short(previous_s));
         if time_s <= previous_s {
             let remedy = if time_s == previous_s {
                 "the clock is coarser than the rows: log times with more digits, or keep one row \
@@ -113,10 +113,12 @@ impl LogRow {
                 "cut the log there, mark the recordings in a segment column, or name a range of \
                  rows"
             };
+            let (now, before) = times();
             let what = format!("time does not increase: {now} s after {before} s");
             say("time", self.fields.time, what, remedy);
         }
         if time_s - previous_s > LONGEST_GAP_S {
+            let (now, before) = times();
             let what = format!("time jumps from {before} s to {now} s within a motion");
             let remedy = "check the time column's unit, or set split_at_gap_s in the model's \
                           [log] to begin a new motion there";
