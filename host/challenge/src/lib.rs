@@ -6,7 +6,6 @@
 mod bench;
 mod bench_arm;
 mod encoder;
-mod error;
 mod gyro;
 mod hidden_effect;
 mod history;
@@ -32,7 +31,6 @@ mod tests;
 pub use bench::{
     Bench, BenchEffect, BenchLog, Motions, bench, true_model_toml, unknown_law_arm, weakened_arm,
 };
-pub use error::ChallengeError;
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use played::{ArmInputs, play};
 pub use readings::{READINGS, Readings, read_arm, read_pendulum};
@@ -175,8 +173,10 @@ fn stream(seed: u64, purpose: u64) -> ChaCha8Rng {
 pub fn write(challenge: &Challenge, dir: &Path) -> Result<()> {
     match fs::read_dir(dir).map(|mut entries| entries.next().is_some()) {
         Ok(true) => {
-            let taken = ChallengeError::NotEmpty(dir.to_path_buf());
-            return Err(Error::Usage(Box::new(taken)));
+            return Err(Error::usage(
+                format!("{} is not empty", dir.display()),
+                "name a new directory: nothing is overwritten",
+            ));
         }
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
             return Err(Error::file(dir, "read", error));

@@ -48,8 +48,7 @@ pub fn score(
 ) -> Result<ChallengeScore> {
     let file = dir.join("answer.sealed");
     let text = std::fs::read_to_string(&file).map_err(|error| Error::file(&file, "read", error))?;
-    let answer: ChallengeAnswer =
-        unseal(&text).map_err(|why| Error::refused(Place::file(&file), why))?;
+    let answer: ChallengeAnswer = unseal(&text).map_err(|why| why.at(Place::file(&file)))?;
     let nominal = Model::load(&dir.join("nominal.toml"))?;
     let truth = Model::parse(&answer.true_model_toml, &file)?;
     let added = beyond(model, &nominal);

@@ -3,7 +3,7 @@
 //! This keeps honest people from peeking, no more. The key is in the source; whoever wants to can
 //! open it.
 
-use super::error::ChallengeError;
+use handstand_model::error::Problem;
 use handstand_model::output::number::hex;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -52,14 +52,23 @@ pub fn seal(answer: &impl Serialize) -> String {
 ///
 /// # Errors
 /// It was changed, or is no sealed answer.
-pub fn unseal<T: DeserializeOwned>(text: &str) -> Result<T, ChallengeError> {
-    let sealed: Sealed = serde_json::from_str(text).map_err(|_| ChallengeError::NotSealed)?;
-    let bytes = unhex(&sealed.sealed).ok_or(ChallengeError::NotHexadecimal)?;
+pub fn unseal<T: DeserializeOwned>(text: &str) -> Result<T, Problem> {
+    let refused = |what: &str| {
+        Problem::new(
+            what,
+            "take the file as `challenge` wrote it, or generate the challenge again",
+        )
+    };
+    let sealed: Sealed = serde_json::from_str(text).map_err(|_| refused("not a sealed answer"))?;
+    let bytes =
+        unhex(&sealed.sealed).ok_or_else(|| refused("the sealed answer is not hexadecimal"))?;
     let plain = masked(&bytes);
     if hex(Sha256::digest(&plain)) != sealed.sha256 {
-        return Err(ChallengeError::Changed);
+        return Err(refused(
+            "the sealed answer was changed: its SHA-256 does not match",
+        ));
     }
-    serde_json::from_slice(&plain).map_err(|_| ChallengeError::OtherVersion)
+    serde_json::from_slice(&plain).map_err(|_| refused("the sealed answer is of another version"))
 }
 
 /// `bytes` xor SHA-256 of a counter; undoes itself.

@@ -84,7 +84,7 @@ pub(super) fn experiments(
         }
     }
     if let (true, Some(why)) = (planned.is_empty(), refused) {
-        return Err(why.into());
+        return Err(why);
     }
     let conditions = Condition::all(model, added_kg);
     let pairs = planned.iter().flat_map(|planned| {

@@ -34,7 +34,7 @@ impl From<Error> for LabError {
 impl LabError {
     fn status(&self) -> StatusCode {
         match self {
-            LabError::Library(Error::Usage(_) | Error::Data { .. } | Error::Design(_)) => {
+            LabError::Library(Error::Usage(_) | Error::Data { .. } | Error::Design { .. }) => {
                 StatusCode::UNPROCESSABLE_ENTITY
             }
             LabError::Library(_) => StatusCode::INTERNAL_SERVER_ERROR,

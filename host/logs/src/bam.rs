@@ -7,7 +7,6 @@
 use super::format::LogFormat;
 use super::read::LEAST_ROWS;
 use super::reading_limit::LARGEST_READING;
-use super::reason::LogReason;
 use super::request::LogRequest;
 use super::table::{LogTable, TableFile};
 use crate::error::{Error, Place, Result};
@@ -16,7 +15,6 @@ use crate::output::number::hex;
 use crate::output::shortened;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::path::Path;
 
 /// How far a bench's mass, moment and length may lie off the model's, as a share: a model's link
 /// counts the arm and what was fitted, the bench its weight.
@@ -75,13 +73,14 @@ pub(super) fn read(
     columns: &LogColumns,
     bench: &mut BamBench,
 ) -> Result<(LogTable, LogColumns)> {
-    let bytes = LogTable::bytes(&request.path, LogFormat::Bam)?;
+    let path = &request.path;
+    let file = TableFile { path };
+    let bytes = LogTable::bytes(path, LogFormat::Bam)?;
     let mut table = read_of(&bytes, request, Some(columns), bench)?;
     table.sha256 = hex(Sha256::digest(&bytes));
     let joints = columns.joints.len();
     if joints != 1 {
-        return Err(Error::data(
-            Place::file(&request.path),
+        return Err(file.wrong(
             format!("a log of BAM is of one joint, the model of {joints}"),
             "give it with the model of its bench's arm",
         ));
@@ -143,45 +142,26 @@ fn read_of(
     let path = &request.path;
     let log: Value = serde_json::from_slice(bytes).map_err(|error| {
         let place = Place::at(path, error.line().max(1), error.column().max(1));
-        let message = error.to_string();
-        Error::refused(place, LogReason::NotJson { message })
+        Error::data(
+            place,
+            format!("not JSON: {error}"),
+            "was the recording broken off? Record again, or export CSV",
+        )
     })?;
-    let refuse = |reason| Error::refused(Place::file(path), reason);
+    let file = TableFile { path };
     let figures = BenchFigures::of(&log);
     let payload_kg = match columns {
-        Some(columns) => payload_kg(&log, figures, columns).map_err(refuse)?,
+        Some(columns) => payload_kg(&log, file, figures, columns)?,
         None => 0.0,
     };
-    bench.check(&log, &request.name()).map_err(refuse)?;
-    let all = log.get("entries").and_then(Value::as_array);
-    let all = all.ok_or_else(|| refuse(LogReason::NoEntries))?;
-    let entries = all.len();
-    let (first, last) = request.rows.unwrap_or((0, entries.saturating_sub(1)));
-    if first >= entries || last >= entries || last - first + 1 < LEAST_ROWS {
-        return Err(refuse(LogReason::EntryRange {
-            first,
-            last,
-            entries,
-        }));
-    }
-    let entries = Entries {
-        path,
-        list: &all[first..=last],
-        first,
-    };
-    let time_s = entries.numbers(TIME)?;
-    if let Some(late) = time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(refuse(LogReason::EntryTime {
-            entry: first + late + 1,
-            time_s: time_s[late + 1],
-            previous_s: time_s[late],
-        }));
-    }
+    bench.check(&log, request)?;
+    let entries = Entries::of(&log, request, file)?;
+    let time_s = entries.times_s()?;
     let mut table = LogTable {
         constants: vec![(PAYLOAD.to_string(), payload_kg, 1)],
         is_si: true,
         bench: figures,
-        first,
+        first: entries.first,
         is_entries: true,
         ..LogTable::default()
     };
@@ -204,17 +184,22 @@ fn read_of(
 /// The payload of a log, kg, once its figures agree with the model's.
 fn payload_kg(
     log: &Value,
+    file: TableFile,
     figures: Option<BenchFigures>,
     columns: &LogColumns,
-) -> Result<f64, LogReason> {
+) -> Result<f64> {
     let payload_kg = columns.payload.as_ref().map(|payload| {
         let value = log.get(&payload.name).and_then(Value::as_f64);
         let value = value.filter(|value| value.is_finite() && *value >= 0.0);
-        value
-            .map(|value| payload.to_si(value))
-            .ok_or(LogReason::NoFact {
-                key: payload.name.clone(),
-            })
+        value.map(|value| payload.to_si(value)).ok_or_else(|| {
+            file.wrong(
+                format!(
+                    "no number '{}' beside the entries, which the model's payload is",
+                    shortened(&payload.name)
+                ),
+                "payload = { column = \"mass\", unit = \"kg\", at_m = LENGTH } is the key of BAM",
+            )
+        })
     });
     let payload_kg = payload_kg.transpose()?;
     let (Some(arm), Some(bench)) = (columns.arm, figures) else {
@@ -245,12 +230,14 @@ fn payload_kg(
     let said = compared.into_iter().filter(|(_, found, ..)| *found > 0.0);
     for (quantity, found, expected, unit) in said {
         if (found - expected).abs() > TOLERANCE * expected {
-            return Err(LogReason::OtherRig {
-                quantity,
-                found,
-                expected,
-                unit,
-            });
+            return Err(file.wrong(
+                format!(
+                    "the log's {quantity} is {found:.4} {unit}, the model has {expected:.4} {unit}"
+                ),
+                "mend the model's link; logs of several weights fit one model whose link is the \
+                 arm alone, with payload = { column = \"mass\", unit = \"kg\", at_m = LENGTH } in \
+                 its [log]",
+            ));
         }
     }
     Ok(payload_kg.unwrap_or(0.0))
@@ -258,33 +245,69 @@ fn payload_kg(
 
 impl BamBench {
     /// Holds a log's gain against those of the logs before.
-    fn check(&mut self, log: &Value, name: &str) -> Result<(), LogReason> {
+    fn check(&mut self, log: &Value, request: &LogRequest) -> Result<()> {
         let number = |key: &str| log.get(key).and_then(Value::as_f64);
         match (number("kp"), &self.kp) {
             (Some(found), Some((first, expected))) if found != *expected => {
-                let (expected, first) = (*expected, first.clone());
-                Err(LogReason::OtherGain {
-                    found,
-                    expected,
-                    first,
-                })
+                return Err(Error::data(
+                    Place::file(&request.path),
+                    format!("kp is {found}, and {expected} in {first}"),
+                    "give the logs of one gain together: a model's drive has one gain",
+                ));
             }
-            (Some(kp), None) => {
-                self.kp = Some((name.to_string(), kp));
-                Ok(())
-            }
-            _ => Ok(()),
+            (Some(kp), None) => self.kp = Some((request.name(), kp)),
+            _ => {}
         }
+        Ok(())
     }
 }
 
 struct Entries<'a> {
-    path: &'a Path,
+    file: TableFile<'a>,
     list: &'a [Value],
     first: usize,
 }
 
 impl Entries<'_> {
+    /// Those asked for.
+    fn of<'a>(log: &'a Value, request: &LogRequest, file: TableFile<'a>) -> Result<Entries<'a>> {
+        let all = log.get("entries").and_then(Value::as_array);
+        let all = all.ok_or_else(|| {
+            file.wrong(
+                "no list 'entries'",
+                "a BAM log is an object with a list 'entries'; save the records of other JSON as \
+                 CSV, in Python: pandas.read_json(\"log.json\").to_csv(\"log.csv\", index=False)",
+            )
+        })?;
+        let entries = all.len();
+        let (first, last) = request.rows.unwrap_or((0, entries.saturating_sub(1)));
+        if first >= entries || last >= entries || last - first + 1 < LEAST_ROWS {
+            return Err(file.wrong(
+                format!("entries {first}-{last} of {entries}; at least {LEAST_ROWS} are needed"),
+                "entries count from 0; record longer if there are too few",
+            ));
+        }
+        let list = &all[first..=last];
+        Ok(Entries { file, list, first })
+    }
+
+    /// Times, which increase, s.
+    fn times_s(&self) -> Result<Vec<f64>> {
+        let time_s = self.numbers(TIME)?;
+        match time_s.windows(2).position(|pair| pair[1] <= pair[0]) {
+            None => Ok(time_s),
+            Some(late) => Err(self.file.wrong(
+                format!(
+                    "entry {}, timestamp: time does not increase: {} s after {} s",
+                    self.first + late + 1,
+                    time_s[late + 1],
+                    time_s[late]
+                ),
+                "ask for a range of entries without the step, such as log.json:0-99",
+            )),
+        }
+    }
+
     fn numbers(&self, key: &'static str) -> Result<Vec<f64>> {
         let numbered = self.list.iter().enumerate();
         numbered
@@ -355,18 +378,18 @@ impl Entries<'_> {
         index: usize,
         key: &'static str,
         value: Option<&Value>,
-        expected: &'static str,
+        expected: &str,
     ) -> Error {
         let found = value.map_or("nothing".to_string(), |value| {
             shortened(&value.to_string()).into_owned()
         });
-        let reason = LogReason::WrongEntry {
-            entry: self.first + index,
-            key,
-            found,
-            expected,
-        };
-        Error::refused(Place::file(self.path), reason)
+        self.file.wrong(
+            format!(
+                "entry {}, {key}: {found} is not {expected}",
+                self.first + index
+            ),
+            "leave the entry out by a range such as log.json:0-99, or record again",
+        )
     }
 }
 

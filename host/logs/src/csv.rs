@@ -1,12 +1,12 @@
 //! Reads a CSV log into a table.
 
 use super::cell::{is_missing, number};
+use super::fault::RowFault;
 use super::header::{LogHeader, comment, fields, surplus};
 use super::iso::iso_ns;
-use super::lines::Lines;
-use super::reason::LogReason;
+use super::lines::{Lines, NoText};
 use super::table::{LogTable, MOST_CELLS, TableFile, TextCells};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::model::LogColumns;
 use std::path::Path;
 
@@ -33,11 +33,11 @@ pub(super) fn read(path: &Path, columns: Option<&LogColumns>) -> Result<LogTable
     }
     loop {
         let at = lines.number + 1;
-        match lines.next() {
-            Ok(None) => break,
-            Ok(Some(line)) if line.trim().is_empty() || comment(line).is_some() => {}
-            Ok(Some(line)) => rows.take(line, at),
-            Err(error) => rows.broken(error, at)?,
+        match lines.next_line()? {
+            None => break,
+            Some(Ok(line)) if line.trim().is_empty() || comment(line).is_some() => {}
+            Some(Ok(line)) => rows.take(line, at),
+            Some(Err(no_text)) => rows.broken(&no_text, at),
         }
         if rows.cells() > MOST_CELLS.max(lines.bytes) {
             let remedy = "look at its rows: most have fewer fields than there are names";
@@ -101,8 +101,10 @@ impl CsvRows {
         let mut cells = fields(line, separator);
         let (found, expected) = (cells.len(), self.table.names.len());
         if surplus(&mut cells, &self.table.names) {
-            let reason = LogReason::FieldCount { found, expected };
-            text.fault(found.min(expected) + 1, reason);
+            text.fault(
+                found.min(expected) + 1,
+                RowFault::Fields { found, expected },
+            );
         }
         let row = text.begin_row(at);
         for (index, column) in self.table.columns.iter_mut().enumerate() {
@@ -130,18 +132,14 @@ impl CsvRows {
     }
 
     /// Takes a row that is no UTF-8, of which nothing can be read.
-    fn broken(&mut self, error: Error, at: usize) -> Result<()> {
-        let reason = error.reason::<LogReason>().cloned();
-        let (Error::Data { place, .. }, Some(reason @ LogReason::NotUtf8 { .. }), Some(text)) =
-            (&error, reason, &mut self.table.text)
-        else {
-            return Err(error);
+    fn broken(&mut self, NoText { place, fault }: &NoText, at: usize) {
+        let Some(text) = &mut self.table.text else {
+            return;
         };
-        text.fault(place.column.unwrap_or(1), reason);
+        text.fault(place.column.unwrap_or(1), *fault);
         text.begin_row(at);
         for column in &mut self.table.columns {
             column.push(f64::NAN);
         }
-        Ok(())
     }
 }

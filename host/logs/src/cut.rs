@@ -1,23 +1,23 @@
 //! Cuts a log's rows into motions, at segments and gaps, whatever its format.
 
 use super::bam::BamBench;
+use super::fault::LogFault;
 use super::format::LogFormat;
 use super::read::LEAST_ROWS;
-use super::reason::LogReason;
 use super::request::LogRequest;
 use super::row::{Before, Fields, LogRow};
 use super::row_reader::RowReader;
 use super::short::ShortMotions;
 use super::table::LogTable;
 use super::{LogFinding, Severity, bam};
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Problem, Result};
 use crate::model::LogColumns;
 use crate::motion::{Motion, MotionSource, ends_s};
 use std::borrow::Cow;
 use std::path::Path;
 
 /// What is told of each fault of a log, with the kind of its finding; an error ends the reading.
-pub(super) type Report<'a> = &'a mut dyn FnMut(&'static str, Error) -> Result<()>;
+pub(super) type Report<'a> = &'a mut dyn FnMut(&'static str, LogFault) -> Result<()>;
 
 /// A motion as its rows stand: without a name, and with gaps.
 #[derive(Debug)]
@@ -44,8 +44,8 @@ pub(super) struct Cut {
 
 impl Cut {
     /// Why no row at all was taken, where a column is what it lacks.
-    pub fn lack(&self, columns: &LogColumns, name: &str) -> Option<LogReason> {
-        self.left_out.reason(columns, name)
+    pub fn lack(&self, columns: &LogColumns, name: &str) -> Option<Problem> {
+        self.left_out.problem(columns, name)
     }
 
     /// Whether no row was taken.
@@ -125,11 +125,11 @@ struct LeftOut {
 
 impl LeftOut {
     /// The column for want of which all rows were left out.
-    fn reason(&self, columns: &LogColumns, name: &str) -> Option<LogReason> {
+    fn problem(&self, columns: &LogColumns, name: &str) -> Option<Problem> {
         let input = |joint: usize| columns.joints[joint].input.as_ref();
         let torque_on = columns.torque_on.clone().filter(|_| self.without_torque);
         let input = self.without_input.and_then(input).map(|input| input.name());
-        Some(LogReason::empty(input.or(torque_on)?, name))
+        Some(empty(&input.or(torque_on)?, name))
     }
 }
 
@@ -158,21 +158,19 @@ impl Cutter<'_> {
             self.cut.rows += 1;
             match filled {
                 Ok(()) => self.take(&row)?,
-                Err(error) => (self.report)("cell", error)?,
+                Err(fault) => (self.report)("cell", *fault)?,
             }
         }
-        if let Some(reason) = self.request.beyond(table.first + table.rows()) {
-            self.refuse("range", reason)?;
+        if let Some(problem) = self.request.beyond(table.first + table.rows()) {
+            self.refuse("range", problem)?;
         }
         self.close()
     }
 
     /// Something is wrong with the file.
-    fn refuse(&mut self, kind: &'static str, reason: LogReason) -> Result<()> {
-        (self.report)(
-            kind,
-            Error::refused(Place::file(&self.request.path), reason),
-        )
+    fn refuse(&mut self, kind: &'static str, problem: Problem) -> Result<()> {
+        let place = Place::file(&self.request.path);
+        (self.report)(kind, LogFault::new(place, problem))
     }
 
     fn take(&mut self, row: &LogRow) -> Result<()> {
@@ -192,8 +190,8 @@ impl Cutter<'_> {
             }
             Some(wrong) => {
                 for found in wrong {
-                    let error = Error::refused(row.place(found.field), found.reason);
-                    (self.report)(found.kind, error)?;
+                    let fault = LogFault::new(row.place(found.field), found.problem);
+                    (self.report)(found.kind, fault)?;
                 }
                 // A sample out of order would spoil every difference after it; after a restart,
                 // that is one to the samples before.
@@ -222,7 +220,7 @@ impl Cutter<'_> {
             return Ok(());
         }
         for column in empty_columns(&ended.motion, self.columns) {
-            self.refuse("missing", LogReason::empty(column, &self.request.name()))?;
+            self.refuse("missing", empty(&column, &self.request.name()))?;
         }
         self.cut.motions.push(ended);
         Ok(())
@@ -308,6 +306,15 @@ fn rows_left(time_s: &[f64], (earliest, latest): (f64, f64)) -> usize {
     let begin = time_s.partition_point(|t| *t < first + latest);
     let end = time_s.partition_point(|t| *t <= last + earliest);
     end.saturating_sub(begin)
+}
+
+/// A column that holds no value throughout a motion.
+fn empty(column: &str, motion: &str) -> Problem {
+    Problem::new(
+        format!("{column} holds no value in {motion}"),
+        "record it (goals: by `handstand replay --record`), or take the column out of the \
+         model's [log]",
+    )
 }
 
 /// Columns of which a motion has no value, and inputs that an energised sample comes before.

@@ -4,7 +4,6 @@ use super::cell::{is_missing, number};
 use super::iso::iso_ns;
 use super::layout::{BLANKS, LOOK, Layout, names_row};
 use super::lines::Lines;
-use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
 use std::borrow::Cow;
 use std::path::Path;
@@ -40,7 +39,11 @@ impl LogHeader {
         loop {
             let number = lines.number + 1;
             let Some(text) = lines.next()? else {
-                return Err(Error::refused(Place::file(path), LogReason::NoHeader));
+                return Err(Error::data(
+                    Place::file(path),
+                    "the log holds no header line",
+                    "record again: a log is a line of column names, then a line per sample",
+                ));
             };
             if text.trim().is_empty() || (number == 1 && says_separator(text)) {
                 continue;
@@ -68,14 +71,8 @@ impl LogHeader {
                 line,
                 ahead: &ahead,
             };
-            if let Some((line, reason)) = layout.fault(is_known(&names)) {
-                let reason = match (reason, time) {
-                    (LogReason::NoNames { .. }, Some(time)) => LogReason::NoNames {
-                        column: Some(time.to_string()),
-                    },
-                    (reason, _) => reason,
-                };
-                return Err(Error::refused(Place::at(path, line, 1), reason));
+            if let Some((line, problem)) = layout.fault(is_known(&names), time) {
+                return Err(problem.at(Place::at(path, line, 1)));
             }
             let separator = layout.separator();
             let header = LogHeader {

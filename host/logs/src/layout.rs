@@ -1,8 +1,10 @@
 //! How the lines of a text log lie: which one names the columns, and whether it fits the rows.
 
 use super::cell::{decimal_comma, is_missing, number};
+use super::fault::DECIMAL_COMMAS;
 use super::header::{comment, fields, is_data, separator};
-use super::reason::LogReason;
+use crate::error::Problem;
+use crate::output::shortened;
 
 /// Lines that are looked at behind the names.
 pub(super) const LOOK: usize = 64;
@@ -44,16 +46,26 @@ impl Layout<'_> {
     }
 
     /// What is wrong with the names, or with how the rows are written under them, and the line; a
-    /// line that `is_known` to hold the names is not asked whether it does.
-    pub fn fault(&self, is_known: bool) -> Option<(usize, LogReason)> {
+    /// line that `is_known` to hold the names is not asked whether it does. `time` is a name that
+    /// must be among them, where one is known.
+    pub fn fault(&self, is_known: bool, time: Option<&str>) -> Option<(usize, Problem)> {
         let separator = self.separator();
         let names = fields(self.names, separator);
         if !is_known && names.iter().all(|name| number(name, separator).is_some()) {
-            return Some((self.line, LogReason::NoNames { column: None }));
+            let lacks = time.map(|time| format!(", and no column '{}'", shortened(time)));
+            let problem = Problem::new(
+                format!(
+                    "numbers where the column names should be{}",
+                    lacks.unwrap_or_default()
+                ),
+                "put a line of column names above the first sample, such as time_s,angle_rad",
+            );
+            return Some((self.line, problem));
         }
         if separator == b',' && self.has_decimal_commas(names.len()) {
             let line = self.rows().next().map_or(self.line, |(line, _)| line);
-            return Some((line, LogReason::DecimalCommas));
+            let what = "decimal commas in fields that commas separate";
+            return Some((line, Problem::new(what, DECIMAL_COMMAS)));
         }
         self.names_below(names.len(), is_known)
             .or_else(|| self.width(names.len(), separator))
@@ -84,7 +96,7 @@ impl Layout<'_> {
     }
 
     /// Whether the names stand further down, under a preamble, or are followed by a row of units.
-    fn names_below(&self, names: usize, is_known: bool) -> Option<(usize, LogReason)> {
+    fn names_below(&self, names: usize, is_known: bool) -> Option<(usize, Problem)> {
         let lines = self
             .ahead
             .iter()
@@ -120,15 +132,30 @@ impl Layout<'_> {
             return None;
         }
         match names == above.len() {
-            true if begin == 1 => Some((*line, LogReason::UnitsRow)),
+            true if begin == 1 => {
+                let problem = Problem::new(
+                    "a row of words between the column names and the numbers, of units perhaps",
+                    "delete this line; units stand in the names: angle [deg], angle_deg",
+                );
+                Some((*line, problem))
+            }
             true if like_sample(&lines[0].1) => None,
             _ if is_known => None,
-            _ => Some((self.line, LogReason::NamesBelow { line: *line })),
+            _ => {
+                let problem = Problem::new(
+                    format!(
+                        "this names no columns of the rows; line {line} looks like the line of \
+                         column names"
+                    ),
+                    format!("delete the lines above line {line}, or begin each of them with #"),
+                );
+                Some((self.line, problem))
+            }
         }
     }
 
     /// Whether most rows have more or fewer fields than there are names.
-    fn width(&self, names: usize, separator: u8) -> Option<(usize, LogReason)> {
+    fn width(&self, names: usize, separator: u8) -> Option<(usize, Problem)> {
         let widths = self.rows().map(|(_, row)| {
             let cells = fields(row, separator);
             (
@@ -144,11 +171,17 @@ impl Layout<'_> {
             widths.iter().filter(other)
         };
         let (fields, _) = others().max_by_key(|(width, _)| *width)?;
-        let reason = LogReason::NamesAndFields {
-            names,
-            fields: *fields,
+        if 2 * others().count() <= widths.len() {
+            return None;
+        }
+        let remedy = if names < *fields {
+            "name every column in the header, in the order of the fields"
+        } else {
+            "the names have another separator than the fields, or name columns that are not \
+             there: mend the header"
         };
-        (2 * others().count() > widths.len()).then_some((self.line, reason))
+        let what = format!("the line of column names has {names}, the rows have {fields} fields");
+        Some((self.line, Problem::new(what, remedy)))
     }
 }
 

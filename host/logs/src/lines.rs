@@ -1,8 +1,8 @@
 //! Reads a file line by line and hashes it; holds one line at a time.
 
+use super::fault::RowFault;
 use super::foreign::{HEAD, foreign, unknown_binary};
 use super::format::LogFormat;
-use super::reason::LogReason;
 use super::standard_input::{is_standard_input, standard_input};
 use crate::error::{Error, Place, Result};
 use crate::output::number::hex;
@@ -17,6 +17,12 @@ pub(super) const LONGEST_LINE: usize = 1 << 20;
 
 /// Most bytes that are read ahead.
 const AHEAD: usize = 1 << 20;
+
+/// A line that is not UTF-8, and the field in which it is not.
+pub(super) struct NoText {
+    pub place: Place,
+    pub fault: RowFault,
+}
 
 /// Lines of a text file without their ends (LF, CR LF, or CR alone) and without a byte-order mark.
 pub(super) struct Lines {
@@ -77,6 +83,18 @@ impl Lines {
     /// # Errors
     /// A line that is too long or not UTF-8, with its place; the system's refusal.
     pub fn next(&mut self) -> Result<Option<&str>> {
+        match self.next_line()? {
+            Some(Err(NoText { place, fault })) => Err(fault.problem().at(place)),
+            Some(Ok(text)) => Ok(Some(text)),
+            None => Ok(None),
+        }
+    }
+
+    /// The same where the reading goes on behind a line that is not UTF-8.
+    ///
+    /// # Errors
+    /// A line that is too long, with its place; the system's refusal.
+    pub fn next_line(&mut self) -> Result<Option<Result<&str, NoText>>> {
         match self.ahead.pop_front() {
             Some(line) => self.line = line,
             None => {
@@ -92,19 +110,25 @@ impl Lines {
         self.hash.update(&self.line);
         if self.line.len() > LONGEST_LINE {
             let place = Place::at(&self.path, self.number, 1);
-            return Err(Error::refused(place, LogReason::LineTooLong));
+            return Err(Error::data(
+                place,
+                format!("a line longer than {LONGEST_LINE} bytes"),
+                "this is no CSV log; name a text file with one sample per line",
+            ));
         }
         let line = bare(&self.line, self.number);
         match std::str::from_utf8(line) {
-            Ok(text) => Ok(Some(text)),
+            Ok(text) => Ok(Some(Ok(text))),
             // Comments are for people: an odd letter in one does no harm.
-            Err(_) if matches!(line.trim_ascii_start().first(), Some(b'#' | b'%')) => Ok(Some("#")),
+            Err(_) if matches!(line.trim_ascii_start().first(), Some(b'#' | b'%')) => {
+                Ok(Some(Ok("#")))
+            }
             Err(error) => {
                 let before = &line[..error.valid_up_to()];
                 let separators = before.iter().filter(|byte| b",;\t|".contains(byte));
                 let place = Place::at(&self.path, self.number, separators.count() + 1);
-                let byte = line[before.len()];
-                Err(Error::refused(place, LogReason::NotUtf8 { byte }))
+                let fault = RowFault::NoText(line[before.len()]);
+                Ok(Some(Err(NoText { place, fault })))
             }
         }
     }

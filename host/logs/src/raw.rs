@@ -1,13 +1,13 @@
 //! A log's columns as they stand in the file, before a model says what they mean.
 
 use super::bam::BenchFigures;
+use super::fault::RowFault;
 use super::format::LogFormat;
 use super::lerobot::{DatasetFacts, LerobotDataset, raw_log};
 use super::reading_limit::ReadingLimit;
-use super::reason::LogReason;
 use super::request::LogRequest;
 use super::table::LogTable;
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Result};
 use crate::output::shortened;
 use std::path::Path;
 
@@ -85,8 +85,8 @@ impl RawLog {
     pub fn read_request(request: &LogRequest) -> Result<RawLog> {
         let mut log = RawLog::read_checked(&request.path, Some(request))?;
         let rows = log.columns.first().map_or(0, Vec::len);
-        if let Some(reason) = request.beyond(rows) {
-            return Err(Error::refused(Place::file(&request.path), reason));
+        if let Some(problem) = request.beyond(rows) {
+            return Err(problem.at(Place::file(&request.path)));
         }
         if let Some((first, last)) = request.rows {
             log.columns
@@ -151,14 +151,14 @@ impl RawLog {
 fn hold(path: &Path, table: &LogTable, checked: Option<&LogRequest>) -> Result<()> {
     let limit = checked.map(|request| ReadingLimit::new(request, &table.names));
     for row in 0..table.rows() {
-        if let Some((field, reason)) = table.fault(row) {
-            let is_borne = match reason {
-                LogReason::FieldCount { found, expected } => found <= expected || limit.is_none(),
-                _ => false,
+        if let Some((field, fault)) = table.fault(row) {
+            let is_borne = match fault {
+                RowFault::Fields { found, expected } => found <= expected || limit.is_none(),
+                RowFault::NoText(_) => false,
             };
             if !is_borne {
-                let place = Place::at(path, table.line(row), *field);
-                return Err(Error::refused(place, reason.clone()));
+                let place = Place::at(path, table.line(row), field);
+                return Err(fault.problem().at(place));
             }
         }
         if let Some(limit) = &limit {

@@ -5,9 +5,8 @@ use super::LogFinding;
 use super::bam::BamBench;
 use super::cut::{CutMotion, cut};
 use super::folder::expanded;
-use super::reason::LogReason;
 use super::request::LogRequest;
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Problem, Result};
 use crate::model::LogColumns;
 use crate::motion::Motion;
 use std::collections::HashMap;
@@ -48,16 +47,17 @@ pub fn read_with_findings(
     let (mut motions, mut findings) = (Vec::new(), Vec::new());
     let mut bench = BamBench::default();
     for request in &expanded(requests)? {
-        let (cut, facts) = cut(request, columns, &mut bench, &mut |_, error| Err(error));
+        let (cut, facts) = cut(request, columns, &mut bench, &mut |_, fault| {
+            Err(fault.problem.at(fault.place))
+        });
         let facts = facts?;
         let (path, name) = (&request.path, request.name());
         if cut.is_empty() {
-            let reason = cut.lack(columns, &name);
-            let reason = reason.unwrap_or(LogReason::NoSample);
-            return Err(Error::refused(Place::file(path), reason));
+            let problem = cut.lack(columns, &name).unwrap_or_else(no_sample);
+            return Err(problem.at(Place::file(path)));
         }
-        if let Some((place, reason)) = cut.short.refusal(path).filter(|_| cut.motions.is_empty()) {
-            return Err(Error::refused(place, reason));
+        if let Some((place, problem)) = cut.short.refusal(path).filter(|_| cut.motions.is_empty()) {
+            return Err(problem.at(place));
         }
         findings.extend(facts.finding(path));
         findings.extend(cut.short.warning(path));
@@ -73,6 +73,14 @@ pub fn read_with_findings(
         motions.extend(named);
     }
     Ok((motions, findings))
+}
+
+/// A log without any row.
+pub(super) fn no_sample() -> Problem {
+    Problem::new(
+        "the log holds no sample",
+        "record again: below the column names there is no row",
+    )
 }
 
 /// Names motions after their file and segment, or their place in it where there are several.

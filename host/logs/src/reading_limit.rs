@@ -1,10 +1,10 @@
 //! The limit of what a sensor gives, for columns that a model explains and for raw ones.
 
+use super::fault::quoted;
 use super::init::name_guess;
-use super::reason::LogReason;
 use super::request::LogRequest;
 use super::table::LogTable;
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Problem, Result};
 use crate::model::{Dimension, Unit};
 
 /// No angle, speed, torque, voltage or mass is read beyond this, SI: 160,000 turns. Larger numbers
@@ -18,13 +18,18 @@ pub(super) fn beyond_readings(
     si: f64,
     dimension: Dimension,
     found: impl FnOnce() -> String,
-) -> Option<LogReason> {
+) -> Option<Problem> {
     let is_beyond = dimension != Dimension::Time && si.abs() > LARGEST_READING;
-    is_beyond.then(|| LogReason::NoReading {
-        column: column.to_string(),
-        found: found(),
-        si,
-        unit: dimension.si_unit(),
+    is_beyond.then(|| {
+        let (found, unit) = (quoted(&found()), dimension.si_unit());
+        Problem::new(
+            format!(
+                "{column}: {found} is {si:.3e} {unit}, beyond the {LARGEST_READING:.0} {unit} \
+                 that a reading may be"
+            ),
+            "check the column's unit in the model's [log], or in its name where there is no \
+             model; of a broken cell, delete the value, which leaves a gap",
+        )
     })
 }
 
@@ -56,9 +61,10 @@ impl<'a> ReadingLimit<'a> {
             let Some(unit) = unit else { continue };
             let si = unit.to_si(table.columns[index][row]);
             let found = || table.text(row, index).into();
-            if let Some(reason) = beyond_readings(&table.names[index], si, unit.dimension, found) {
+            let name = &table.names[index];
+            if let Some(problem) = beyond_readings(name, si, unit.dimension, found) {
                 let place = Place::at(&self.request.path, table.line(row), index + 1);
-                return Err(Error::refused(place, reason));
+                return Err(problem.at(place));
             }
         }
         Ok(())

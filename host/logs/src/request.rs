@@ -1,8 +1,7 @@
 //! A log as named on the command line: a path, and the rows wanted.
 
 use super::format::LogFormat;
-use super::reason::LogReason;
-use crate::error::{Error, Result};
+use crate::error::{Error, Problem, Result};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -50,9 +49,12 @@ impl LogRequest {
     }
 
     /// Why a log of so many rows cannot give the rows wanted, if it cannot.
-    pub(super) fn beyond(&self, rows: usize) -> Option<LogReason> {
+    pub(super) fn beyond(&self, rows: usize) -> Option<Problem> {
         let (first, last) = self.rows.filter(|(_, last)| *last >= rows)?;
-        Some(LogReason::RowsBeyond { first, last, rows })
+        Some(Problem::new(
+            format!("rows {first}-{last} asked for, but it has {rows} rows"),
+            "data rows count from 0, after the header",
+        ))
     }
 
     /// File name without its folder, and the rows where a part is wanted: `drop.csv:26-139`.

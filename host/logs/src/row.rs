@@ -1,7 +1,6 @@
 //! One row of a log, in SI.
 
-use super::reason::LogReason;
-use crate::error::Place;
+use crate::error::{Place, Problem};
 use std::path::{Path, PathBuf};
 
 /// Longest gap within a motion, s; over a longer one no simulation says anything, and it would take
@@ -40,7 +39,7 @@ pub(super) struct OutOfPlace {
     /// The field that shows it.
     pub field: usize,
     /// What is said of it.
-    pub reason: LogReason,
+    pub problem: Problem,
 }
 
 /// One sample.
@@ -97,30 +96,47 @@ impl LogRow {
             return None;
         }
         let mut wrong = Vec::new();
-        let mut say = |kind, field, reason| {
+        let mut say = |kind, field, what: String, remedy: &str| {
+            let problem = Problem::new(what, remedy);
             wrong.push(OutOfPlace {
                 kind,
                 field,
-                reason,
+                problem,
             });
         };
+        let times = || (short(time_s), short(previous_s));
         if time_s <= previous_s {
-            let reason = LogReason::TimeNotIncreasing { time_s, previous_s };
-            say("time", self.fields.time, reason);
+            let remedy = if time_s == previous_s {
+                "the clock is coarser than the rows: log times with more digits, or keep one row \
+                 of each time; of rows a fixed period apart, write their number times the period"
+            } else {
+                "cut the log there, mark the recordings in a segment column, or name a range of \
+                 rows"
+            };
+            let (now, before) = times();
+            let what = format!("time does not increase: {now} s after {before} s");
+            say("time", self.fields.time, what, remedy);
         }
         if time_s - previous_s > LONGEST_GAP_S {
-            let reason = LogReason::TimeJumps { time_s, previous_s };
-            say("jump", self.fields.time, reason);
+            let (now, before) = times();
+            let what = format!("time jumps from {before} s to {now} s within a motion");
+            let remedy = "check the time column's unit, or set split_at_gap_s in the model's \
+                          [log] to begin a new motion there";
+            say("jump", self.fields.time, what, remedy);
         }
         if self.payload_kg != previous.payload_kg {
-            let reason = LogReason::PayloadChanges {
-                payload_kg: self.payload_kg,
-                previous_kg: previous.payload_kg,
-            };
-            say("payload", self.fields.payload, reason);
+            let what = format!(
+                "payload changes from {} kg to {} kg within a motion",
+                previous.payload_kg, self.payload_kg
+            );
+            let remedy =
+                "stop the recording to change the payload, or mark motions in a segment column";
+            say("payload", self.fields.payload, what, remedy);
         }
         if self.turned != previous.turned {
-            say("turned", self.fields.turned, LogReason::TurnedRound);
+            let what = "the rig is turned round within a motion".to_string();
+            let remedy = "stop the recording to turn the rig, or mark motions in a segment column";
+            say("turned", self.fields.turned, what, remedy);
         }
         Some(wrong)
     }
@@ -128,5 +144,14 @@ impl LogRow {
     /// The place of a field of this row, counted from 1.
     pub fn place(&self, field: usize) -> Place {
         self.fields.place(&self.path, self.line, field)
+    }
+}
+
+/// A time with all its digits, unless it is too large to be one.
+fn short(time_s: f64) -> String {
+    if time_s.abs() < 1e15 {
+        time_s.to_string()
+    } else {
+        format!("{time_s:e}")
     }
 }

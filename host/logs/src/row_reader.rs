@@ -1,15 +1,24 @@
 //! Reads the rows of a table in SI, by the columns that a model names.
 
+use super::cell::decimal_comma;
+use super::fault::{CellFault, DECIMAL_COMMAS, LogFault, RowFault, WrongCell, quoted};
 use super::iso::iso_ns;
 use super::reading_limit::beyond_readings;
-use super::reason::{FLAG, LogReason, STAMP};
 use super::row::{Fields, LogRow};
 use super::table::{LogCell, LogTable};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Problem, Result};
 use crate::model::{Column, ColumnMean, Dimension, LogColumns};
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::path::Path;
+
+/// What a field with a time stamp must be.
+const STAMP: &str = "a time stamp such as 2026-03-01T12:00:00.5Z";
+/// What a flag must be.
+const FLAG: &str = "0 or 1";
+
+/// What is read of a row, or what is wrong with it.
+type Read<T> = std::result::Result<T, Box<LogFault>>;
 
 /// Where a quantity stands, and how it is scaled.
 struct LogQuantity<'a> {
@@ -118,11 +127,21 @@ impl<'a> RowReader<'a> {
     /// # Errors
     /// Too few or too many fields, fields that hold something else than a finite number, a flag
     /// that is neither 0 nor 1, and a row without a time.
-    pub fn fill(&self, index: usize, row: &mut LogRow) -> Result<()> {
+    pub fn fill(&self, index: usize, row: &mut LogRow) -> Read<()> {
         row.line = self.table.line(index);
-        if let Some((field, reason)) = self.table.fault(index) {
-            let place = Place::at(self.path, row.line, *field);
-            return Err(Error::refused(place, reason.clone()));
+        if let Some((field, fault)) = self.table.fault(index) {
+            let place = Place::at(self.path, row.line, field);
+            let cell = matches!(fault, RowFault::Fields { .. }).then(|| WrongCell {
+                column: String::new(),
+                fault: CellFault::Fields,
+                of_column: None,
+            });
+            let problem = fault.problem();
+            return Err(Box::new(LogFault {
+                place,
+                problem,
+                cell,
+            }));
         }
         let line = Cells {
             reader: self,
@@ -164,7 +183,7 @@ struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    fn maybe(&self, quantity: &Option<LogQuantity>) -> Result<Option<f64>> {
+    fn maybe(&self, quantity: &Option<LogQuantity>) -> Read<Option<f64>> {
         quantity
             .as_ref()
             .map(|quantity| self.value(quantity))
@@ -172,7 +191,7 @@ impl Cells<'_> {
     }
 
     /// The mean of columns, a gap if one of them has one; none of none.
-    fn mean(&self, columns: &[LogQuantity]) -> Result<Option<f64>> {
+    fn mean(&self, columns: &[LogQuantity]) -> Read<Option<f64>> {
         let mut sum = 0.0;
         for quantity in columns {
             sum += self.gap_or(quantity)?;
@@ -181,7 +200,7 @@ impl Cells<'_> {
     }
 
     /// The value, or not a number where there is none.
-    fn gap_or(&self, quantity: &LogQuantity) -> Result<f64> {
+    fn gap_or(&self, quantity: &LogQuantity) -> Read<f64> {
         if self.is_gap(&quantity.cell) {
             Ok(f64::NAN)
         } else {
@@ -189,7 +208,7 @@ impl Cells<'_> {
         }
     }
 
-    fn value(&self, LogQuantity { cell, column }: &LogQuantity) -> Result<f64> {
+    fn value(&self, LogQuantity { cell, column }: &LogQuantity) -> Read<f64> {
         let written = match cell {
             LogCell::Constant(value, _) => Some(*value),
             LogCell::Field(_) if column.unit.name == "iso8601" => {
@@ -206,10 +225,10 @@ impl Cells<'_> {
     }
 
     /// The value, unless no sensor gives one as large.
-    fn reading(&self, cell: &LogCell, column: &Column, value: f64) -> Result<f64> {
+    fn reading(&self, cell: &LogCell, column: &Column, value: f64) -> Read<f64> {
         let found = || self.text(cell).into();
         match beyond_readings(self.name(cell), value, column.unit.dimension, found) {
-            Some(reason) => Err(Error::refused(self.place(cell), reason)),
+            Some(problem) => Err(self.wrong(cell, CellFault::Beyond, problem, None)),
             None => Ok(value),
         }
     }
@@ -219,7 +238,7 @@ impl Cells<'_> {
     }
 
     /// Seconds since the file's first stamp.
-    fn stamp_s(&self, cell: &LogCell) -> Result<f64> {
+    fn stamp_s(&self, cell: &LogCell) -> Read<f64> {
         let stamp_ns = iso_ns(&self.text(cell)).ok_or_else(|| self.refuse(cell, STAMP))?;
         let first_ns = self.reader.first_ns.get().unwrap_or(stamp_ns);
         self.reader.first_ns.set(Some(first_ns));
@@ -233,7 +252,7 @@ impl Cells<'_> {
         }
     }
 
-    fn flag(&self, cell: &Option<LogCell>) -> Result<Option<bool>> {
+    fn flag(&self, cell: &Option<LogCell>) -> Read<Option<bool>> {
         let Some(cell) = cell else { return Ok(None) };
         let value = match cell {
             LogCell::Field(index) => self.table().number(self.row, *index),
@@ -256,25 +275,56 @@ impl Cells<'_> {
     }
 
     /// A time that is no number: a stamp needs no more than another unit.
-    fn no_time(&self, cell: &LogCell) -> Error {
+    fn no_time(&self, cell: &LogCell) -> Box<LogFault> {
         let found = self.text(cell);
         if iso_ns(&found).is_none() {
             return self.refuse(cell, "a number");
         }
-        let reason = LogReason::TimeStamp {
-            column: self.name(cell).to_string(),
-            found: found.into(),
-        };
-        Error::refused(self.place(cell), reason)
+        let problem = Problem::new(
+            format!(
+                "{}: {} is a time stamp, not a number",
+                self.name(cell),
+                quoted(&found)
+            ),
+            "write unit = \"iso8601\" for this column in the model's [log]",
+        );
+        self.wrong(cell, CellFault::Stamp, problem, None)
     }
 
-    fn refuse(&self, cell: &LogCell, expected: &'static str) -> Error {
-        let reason = LogReason::WrongField {
-            column: self.name(cell).to_string(),
-            found: self.text(cell).into(),
-            expected,
+    fn refuse(&self, cell: &LogCell, expected: &'static str) -> Box<LogFault> {
+        let found = self.text(cell);
+        let what = format!("{}: {} is not {expected}", self.name(cell), quoted(&found));
+        let fault = match &*found {
+            "" => CellFault::Nothing,
+            _ => CellFault::Not(expected),
         };
-        Error::refused(self.place(cell), reason)
+        if decimal_comma(&found).is_some() {
+            return self.wrong(cell, fault, Problem::new(what, DECIMAL_COMMAS), None);
+        }
+        let problem = Problem::new(
+            what,
+            "the model reads this column: delete the line, or leave it out by a row range such as \
+             log.csv:26-139",
+        );
+        self.wrong(cell, fault, problem, Some(of_column(&found, expected)))
+    }
+
+    fn wrong(
+        &self,
+        cell: &LogCell,
+        fault: CellFault,
+        problem: Problem,
+        of_column: Option<&'static str>,
+    ) -> Box<LogFault> {
+        Box::new(LogFault {
+            place: self.place(cell),
+            problem,
+            cell: Some(WrongCell {
+                column: self.name(cell).to_string(),
+                fault,
+                of_column,
+            }),
+        })
     }
 
     fn name(&self, cell: &LogCell) -> &str {
@@ -290,5 +340,25 @@ impl Cells<'_> {
             LogCell::Constant(_, line) => *line,
         };
         Place::at(self.reader.path, line, cell.column())
+    }
+}
+
+/// What to do about a column in which this was found throughout.
+fn of_column(found: &str, expected: &str) -> &'static str {
+    let is_number = found.replacen(',', ".", 1).parse::<f64>().is_ok();
+    match expected {
+        _ if found.is_empty() => "record this column, or name another one in the model's [log]",
+        STAMP if is_number => {
+            "write the unit of these numbers for this column in the model's [log]: \
+             unit = \"s\", \"ms\", \"us\" or \"ns\""
+        }
+        STAMP => {
+            "save the times as such stamps, or as numbers with their unit in the model's [log]"
+        }
+        FLAG => "save this column as 0 and 1, or take it out of the model's [log]",
+        _ => {
+            "name a column of numbers in the model's [log], or save this one as numbers with a \
+             decimal point"
+        }
     }
 }

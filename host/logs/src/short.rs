@@ -2,8 +2,7 @@
 
 use super::LEAST_ROWS;
 use super::check::{LogFinding, Severity};
-use super::reason::LogReason;
-use crate::error::Place;
+use crate::error::{Place, Problem};
 use std::path::Path;
 
 /// Motions whose lines are named; the rest are counted.
@@ -36,9 +35,13 @@ impl ShortMotions {
     }
 
     /// Why a file is refused of which nothing else is left, if there is such a motion.
-    pub fn refusal(&self, path: &Path) -> Option<(Place, LogReason)> {
+    pub fn refusal(&self, path: &Path) -> Option<(Place, Problem)> {
         let (line, _, rows) = *self.named.first()?;
-        Some((at(path, line), LogReason::TooShort { rows }))
+        let problem = Problem::new(
+            format!("a motion of {rows} rows; {LEAST_ROWS} are the least"),
+            "leave it out by a row range such as log.csv:26-139, or record longer",
+        );
+        Some((at(path, line), problem))
     }
 
     /// That they are left out, where the file holds longer ones.

@@ -1,7 +1,6 @@
 //! Errors of the whole crate: place, what was found there, exit code and remedy.
 
 use crate::output::readable;
-use std::any::Any;
 use std::borrow::Cow;
 use std::fmt;
 use std::io::ErrorKind;
@@ -54,54 +53,61 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong, as data to match on: each module has a small enum of its own.
+/// What was found and what mends it, in words made where the condition is seen.
 ///
-/// `Display` is the sentence that people read: what was found, and why it is refused.
-pub trait Reason: fmt::Debug + fmt::Display + Any + Send + Sync {
+/// Whoever knows the place, or that the request is to blame, makes an [`Error`] of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// What was found, and why it is refused.
+    pub what: String,
     /// What to do about it.
-    fn remedy(&self) -> Cow<'_, str>;
+    pub remedy: String,
 }
 
-/// A reason in words, without data to match on.
-#[derive(Debug)]
-struct PlainReason {
-    what: String,
-    remedy: String,
+impl Problem {
+    /// `what` was found; `remedy` mends it.
+    pub fn new(what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Problem {
+            what: what.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// It was found in a file.
+    pub fn at(self, place: Place) -> Error {
+        Error::Data {
+            place,
+            problem: self,
+        }
+    }
+
+    /// The request is to blame.
+    pub fn usage(self) -> Error {
+        Error::Usage(self)
+    }
 }
 
-impl fmt::Display for PlainReason {
+impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.what)
     }
 }
 
-impl Reason for PlainReason {
-    fn remedy(&self) -> Cow<'_, str> {
-        Cow::Borrowed(&self.remedy)
-    }
-}
-
-/// A reason in words alone.
-pub fn words(what: impl Into<String>, remedy: impl Into<String>) -> impl Reason {
-    PlainReason {
-        what: what.into(),
-        remedy: remedy.into(),
-    }
-}
+impl std::error::Error for Problem {}
 
 /// An error with everything its reader needs to mend it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The command line asks for something that makes no sense.
     #[error("{}", readable(.0))]
-    Usage(Box<dyn Reason>),
+    Usage(Problem),
     /// A file's content is refused.
-    #[error("{place}: {}", readable(reason))]
+    #[error("{place}: {}", readable(problem))]
     Data {
         /// File, line and column.
         place: Place,
         /// What was found there.
-        reason: Box<dyn Reason>,
+        problem: Problem,
     },
     /// The operating system refused a file.
     #[error("{path}: cannot {action}: {refusal}", path = path.display())]
@@ -115,40 +121,40 @@ pub enum Error {
         refusal: std::io::Error,
     },
     /// Model, weights and timing are well formed, but no design follows from them.
-    #[error("{}", readable(.0))]
-    Design(Box<dyn Reason>),
+    #[error("{}", readable(problem))]
+    Design {
+        /// What stands in the way.
+        problem: Problem,
+        /// Whether it lies in the request's own numbers, whatever the model is.
+        in_request: bool,
+    },
     /// A device (serial port, servo) failed or fell silent.
     #[error("{}", readable(.0))]
-    Device(Box<dyn Reason>),
+    Device(Problem),
 }
 
 impl Error {
     /// A file's content is refused: `what` was found at `place`; `remedy` mends it.
     pub fn data(place: Place, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::refused(place, words(what, remedy))
-    }
-
-    /// A file's content is refused for a reason that callers can match on.
-    pub fn refused(place: Place, reason: impl Reason) -> Self {
-        Error::Data {
-            place,
-            reason: Box::new(reason),
-        }
+        Problem::new(what, remedy).at(place)
     }
 
     /// The request makes no sense.
     pub fn usage(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Usage(Box::new(words(what, remedy)))
+        Error::Usage(Problem::new(what, remedy))
     }
 
     /// No design follows from what was given: `what` stands in the way.
     pub fn design(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Design(Box::new(words(what, remedy)))
+        Error::Design {
+            problem: Problem::new(what, remedy),
+            in_request: false,
+        }
     }
 
     /// A device failed or fell silent.
     pub fn device(what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Error::Device(Box::new(words(what, remedy)))
+        Error::Device(Problem::new(what, remedy))
     }
 
     /// The system refused `action` on `path`.
@@ -167,25 +173,9 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Usage(_) => 2,
-            Error::Data { .. } | Error::Design(_) | Error::File { .. } => 3,
+            Error::Data { .. } | Error::Design { .. } | Error::File { .. } => 3,
             Error::Device(_) => 4,
         }
-    }
-
-    fn any_reason(&self) -> Option<&dyn Reason> {
-        match self {
-            Error::Usage(reason)
-            | Error::Data { reason, .. }
-            | Error::Design(reason)
-            | Error::Device(reason) => Some(&**reason),
-            Error::File { .. } => None,
-        }
-    }
-
-    /// What is wrong as the data of one module, such as `model::TomlReason`;
-    /// `None` if the reason is of another kind.
-    pub fn reason<T: Reason>(&self) -> Option<&T> {
-        (self.any_reason()? as &dyn Any).downcast_ref()
     }
 
     /// What the reader can do about it, if anything is known.
@@ -196,9 +186,10 @@ impl Error {
                 action,
                 refusal,
             } => of_system(path, action, refusal.kind()),
-            _ => self
-                .any_reason()
-                .map(|reason| readable(reason.remedy()).into()),
+            Error::Usage(problem)
+            | Error::Data { problem, .. }
+            | Error::Design { problem, .. }
+            | Error::Device(problem) => Some(readable(&problem.remedy).into()),
         }
     }
 }

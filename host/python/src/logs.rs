@@ -87,9 +87,9 @@ impl FrameFile {
     /// An error of the file as one of the table.
     pub fn named(error: handstand::Error) -> handstand::Error {
         match error {
-            handstand::Error::Data { mut place, reason } => {
+            handstand::Error::Data { mut place, problem } => {
                 place.file = Self::NAME.into();
-                handstand::Error::Data { place, reason }
+                handstand::Error::Data { place, problem }
             }
             error => error,
         }

@@ -105,8 +105,8 @@ impl Model {
         let text = set_values_exactly(&self.text, &self.path, &[(path, value)]);
         let text = text.map_err(|error| match &error {
             // Its place is a file that is not written.
-            handstand::Error::Data { reason, .. } => usage(
-                format!("{address} = {value}: {reason}"),
+            handstand::Error::Data { problem, .. } => usage(
+                format!("{address} = {value}: {problem}"),
                 error.remedy().unwrap_or_default(),
             ),
             _ => exception(error),

@@ -167,7 +167,7 @@ pub fn run(args: &GainsArgs, console: &Console) -> Result<ExitStatus> {
     }
     let design = match Design::of(&part, &request) {
         // Gains that exist and lose their stability in fixed point are the answer no.
-        Err(error @ DesignError::UnstableWhenRounded { .. }) => {
+        Err(error @ DesignError::Rounded(_)) => {
             console.error(error.into());
             return Ok(ExitStatus::Refused);
         }
@@ -239,9 +239,11 @@ fn tuned(
 
 /// What lies in the options' numbers is a request that makes no sense.
 pub(super) fn of_options(error: Error) -> Error {
-    let asked = error.reason().is_some_and(DesignError::in_request);
     match error {
-        Error::Design(reason) if asked => Error::Usage(reason),
+        Error::Design {
+            problem,
+            in_request: true,
+        } => problem.usage(),
         other => other,
     }
 }

@@ -195,10 +195,7 @@ fn ask(args: &InitArgs, draft: &mut Draft) -> Result<()> {
     }
     let open = questions.into_iter().filter(|(.., answered)| !answered);
     for (what, question, guess, _) in open {
-        loop {
-            let Some(line) = asked(question, &guess)? else {
-                break;
-            };
+        while let Some(line) = asked(question, &guess)? {
             let numbers: std::result::Result<Vec<f64>, _> =
                 line.split_whitespace().map(str::parse).collect();
             let taken = match (what, numbers) {

@@ -17,7 +17,7 @@
 use super::servo_columns::ServoColumns;
 use super::show::{self, known};
 use super::{Console, ExitStatus, input};
-use handstand::error::Reason;
+use handstand::error::Problem;
 use handstand::log::{LogRequest, read};
 use handstand::output::number::exact;
 use handstand::sysid::{BlockMean, DeadZoneMap, IntervalEstimate, Side, SupplyLine, blocks};
@@ -156,8 +156,8 @@ fn supply_text(line: &SupplyLine) -> String {
     )
 }
 
-fn refused(why: &dyn Reason, console: &Console) -> Result<ExitStatus> {
-    let data = json!({ "refused": why.to_string(), "remedy": why.remedy() });
-    console.result(&data, || format!("refused: {why} ({})", why.remedy()))?;
+fn refused(why: &Problem, console: &Console) -> Result<ExitStatus> {
+    let data = json!({ "refused": why.to_string(), "remedy": why.remedy });
+    console.result(&data, || format!("refused: {why} ({})", why.remedy))?;
     Ok(ExitStatus::Refused)
 }

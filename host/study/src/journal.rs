@@ -6,7 +6,6 @@
 
 use super::monte_carlo::{CHUNK, columns};
 use super::parse::Study;
-use super::study_error::StudyError;
 use crate::error::{Error, Place, Result};
 use crate::output::append_file::AppendFile;
 use crate::output::number::hex;
@@ -83,8 +82,10 @@ impl Journal {
     /// A journal of another study, one that another program is writing, or what the system refuses.
     pub fn open(path: &Path, header: &Header) -> Result<Journal> {
         let Some((file, bytes)) = AppendFile::open(path)? else {
-            let locked = StudyError::Locked(path.to_path_buf());
-            return Err(Error::Usage(Box::new(locked)));
+            return Err(Error::usage(
+                format!("{}: another program is writing it", path.display()),
+                "wait for it, or give this one another folder",
+            ));
         };
         let mut journal = Journal {
             done: BTreeSet::new(),
@@ -101,7 +102,11 @@ impl Journal {
         }
         let found = content(&bytes, path)?;
         if found.header != *header {
-            return Err(Error::refused(Place::file(path), StudyError::OtherStudy));
+            return Err(Error::data(
+                Place::file(path),
+                "this is the journal of another study, or of another version of the program",
+                "give this study another folder, or delete the journal",
+            ));
         }
         journal.torn_bytes = found.length - found.whole;
         journal.done = found.rows.into_keys().collect();
@@ -141,7 +146,13 @@ fn content(bytes: &[u8], path: &Path) -> Result<Content> {
         .filter(|header: &Header| header.handstand_study == FORMAT && header.chunk > 0)
         .filter(|header| header.chunks() <= MOST_CHUNKS)
         .filter(|_| line.len() < bytes.len())
-        .ok_or_else(|| Error::refused(Place::at(path, 1, 1), StudyError::NoJournal))?;
+        .ok_or_else(|| {
+            Error::data(
+                Place::at(path, 1, 1),
+                "this is no journal of a study",
+                "name a .journal file that `handstand study monte-carlo` wrote, or its folder",
+            )
+        })?;
     let mut place = line.len() + 1;
     let mut rows = BTreeMap::new();
     while let Some((chunk, text, end)) = chunk_at(bytes, place) {

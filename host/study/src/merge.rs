@@ -1,7 +1,6 @@
 //! From journals to one table.
 
 use super::journal::{self, Header};
-use super::study_error::StudyError;
 use super::summary::Summary;
 use crate::error::{Error, Place, Result};
 use std::collections::BTreeMap;
@@ -42,8 +41,11 @@ pub fn merge(files: &[PathBuf]) -> Result<Result<Merged, Missing>> {
         }
         match &found {
             Some((header, first)) if *header != content.header => {
-                let differ = StudyError::StudiesDiffer(first.clone());
-                return Err(Error::refused(Place::file(&file), differ));
+                return Err(Error::data(
+                    Place::file(&file),
+                    format!("this is another study than {}", first.display()),
+                    "merge shards of one study, all by the same version of the program",
+                ));
             }
             Some(_) => {}
             None => found = Some((content.header, file.clone())),
@@ -51,9 +53,12 @@ pub fn merge(files: &[PathBuf]) -> Result<Result<Merged, Missing>> {
         for (chunk, text) in content.rows {
             match rows.get(&chunk) {
                 Some((other, first)) if *other != text => {
-                    let other = first.clone();
-                    let differs = StudyError::ChunkDiffers { chunk, other };
-                    return Err(Error::refused(Place::file(&file), differs));
+                    return Err(Error::data(
+                        Place::file(&file),
+                        format!("chunk {chunk} differs from that in {}", first.display()),
+                        "the same run must give the same row: one of the two was changed, or \
+                         computed on a machine whose arithmetic differs",
+                    ));
                 }
                 Some(_) => {}
                 None => {
@@ -63,16 +68,18 @@ pub fn merge(files: &[PathBuf]) -> Result<Result<Merged, Missing>> {
         }
     }
     let Some((header, first)) = found else {
-        return Err(Error::Usage(Box::new(StudyError::NothingToMerge)));
+        return Err(Error::usage(
+            "there is no journal to merge",
+            "name .journal files, or folders with such files",
+        ));
     };
     let chunks = header.chunks();
     if let Some((&chunk, (_, file))) = rows.range(chunks..).next() {
-        let beyond = StudyError::ChunkBeyond {
-            chunk,
-            chunks,
-            other: first,
-        };
-        return Err(Error::refused(Place::file(file), beyond));
+        return Err(Error::data(
+            Place::file(file),
+            format!("chunk {chunk} of a study of {chunks} chunks"),
+            format!("compare the file with {}", first.display()),
+        ));
     }
     let missing: Vec<usize> = (0..chunks)
         .filter(|chunk| !rows.contains_key(chunk))
@@ -151,7 +158,13 @@ impl Merged {
                 let row: Option<Vec<f64>> = fields.map(Result::ok).collect();
                 let row = row.filter(|row| row.len() == self.header.columns.len());
                 let place = || Place::at(file, line + 2, 1);
-                row.ok_or_else(|| Error::refused(place(), StudyError::WrongRow))
+                row.ok_or_else(|| {
+                    Error::data(
+                        place(),
+                        "this row does not fit the columns",
+                        "run the shard again",
+                    )
+                })
             })
             .collect()
     }

@@ -7,7 +7,6 @@ use super::case::Designed;
 use super::journal::Journal;
 use super::judge::{Drawn, run_drawn};
 use super::parse::Study;
-use super::study_error::StudyError;
 use crate::error::{Error, Result};
 use crate::output::table::or_empty;
 use crate::sim::closed_loop::Outcome;
@@ -68,7 +67,7 @@ pub fn fill(
                 let rows = chunk_rows(study, designed, chunk)?;
                 // Nobody listens any more after a write has failed.
                 send.send((chunk, rows))
-                    .map_err(|_| Error::Usage(Box::new(StudyError::WritingStopped)))
+                    .map_err(|_| Error::usage("writing has stopped", "see the error before"))
             })
         });
         // Taken by value: once this loop ends early, the computing stops.

@@ -5,13 +5,14 @@ mod weight;
 
 use super::case::Case;
 use super::judge::Judging;
+use super::quantities::QUANTITIES;
 use super::quantity::{Distribution, SpreadOver, Uncertain, quantity};
-use super::study_error::StudyError;
 use crate::error::{Error, Result};
 use crate::model::Limits;
 use crate::model::Model;
 use crate::model::reader::Table;
 use crate::model::source::TomlSource;
+use crate::model::suggest::suggest;
 use crate::output::number::hex;
 use crate::synth::controllers::{self, DESIGNS};
 use conditions::conditions;
@@ -192,7 +193,12 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
     let what = table.required_text("what")?;
     let named = quantity(what).and_then(|quantity| Some((quantity, quantity.spread.as_ref()?)));
     let Some((quantity, spread)) = named else {
-        return Err(table.bad("what", StudyError::NotUncertain(what.to_string())));
+        let uncertain = QUANTITIES
+            .iter()
+            .filter(|quantity| quantity.spread.is_some());
+        let known: Vec<&str> = uncertain.map(|quantity| quantity.id).collect();
+        let found = format!("nothing called `{what}` can be uncertain");
+        return Err(table.bad("what", found, suggest(what, &known)));
     };
     let kinds = [
         ("uniform", Distribution::Uniform),
@@ -206,7 +212,8 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
     let places = match (spread.place, chosen) {
         (SpreadOver::Whole, None) => vec![None],
         (SpreadOver::Whole, Some(_)) => {
-            return Err(table.bad("link", StudyError::WholeRobot(what.to_string())));
+            let found = format!("`{what}` belongs to the whole robot");
+            return Err(table.bad("link", found, "leave `link` out"));
         }
         (SpreadOver::Link, Some(link)) => vec![Some(link)],
         (SpreadOver::Link, None) => (0..links).map(Some).collect(),
@@ -220,7 +227,8 @@ fn uncertain(table: &Table<'_>, links: usize, all: &mut Vec<Uncertain>) -> Resul
             size,
         };
         if all.iter().any(|other| other.column() == new.column()) {
-            return Err(table.bad("what", StudyError::DrawnTwice(new.column())));
+            let found = format!("{} is drawn twice", new.column());
+            return Err(table.bad("what", found, "say it once"));
         }
         all.push(new);
     }

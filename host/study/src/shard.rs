@@ -1,6 +1,6 @@
 //! A share of a study's chunks.
 
-use super::study_error::StudyError;
+use crate::error::Problem;
 use std::fmt;
 use std::str::FromStr;
 
@@ -31,10 +31,15 @@ impl fmt::Display for Shard {
 }
 
 impl FromStr for Shard {
-    type Err = StudyError;
+    type Err = Problem;
 
-    fn from_str(text: &str) -> Result<Self, StudyError> {
-        let wish = || StudyError::NoShard(text.to_string());
+    fn from_str(text: &str) -> Result<Self, Problem> {
+        let wish = || {
+            Problem::new(
+                format!("`{text}` is no shard: write `2/5` for the second of five"),
+                "the first of five is `1/5`, the last `5/5`",
+            )
+        };
         let (index, of) = text.split_once('/').ok_or_else(wish)?;
         let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wish());
         let (index, of) = (number(index)?, number(of)?);

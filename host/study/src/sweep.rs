@@ -4,7 +4,6 @@ use super::case::Case;
 use super::judge::{Figures, Judging, judge};
 use super::quantity::{Levels, Quantity};
 use super::region::tilt_border_rad;
-use super::study_error::StudyError;
 use crate::error::{Error, Result};
 use serde::Serialize;
 
@@ -58,19 +57,17 @@ pub fn sweep(
 ) -> Result<Sweep> {
     let (low, high) = levels.bounds;
     if let Some(level) = values.iter().find(|level| !(low..=high).contains(*level)) {
-        return Err(Error::Usage(Box::new(StudyError::NoLevel {
-            sweep: quantity.id,
-            level: *level,
-            bounds: levels.bounds,
-            unit: levels.unit,
-        })));
+        return Err(Error::usage(
+            format!("{}: there is no level {level}", quantity.id),
+            format!("give levels from {low} to {high} {}", levels.unit).trim_end(),
+        ));
     }
     let judged = values.iter().map(|&level| {
         let mut case = case.clone();
         (levels.set)(&mut case, level);
         let (figures, refused) = match at_level(&case, judging) {
             Ok(figures) => (Some(figures), None),
-            Err(Error::Design(reason)) => (None, Some(reason.to_string())),
+            Err(Error::Design { problem, .. }) => (None, Some(problem.what)),
             Err(error) => return Err(error),
         };
         done();

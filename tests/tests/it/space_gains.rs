@@ -6,7 +6,7 @@ use crate::space_linear::with_torques;
 use handstand::Model;
 use handstand::model::Drive;
 use handstand::study::response;
-use handstand::synth::{Design, DesignError, PoseReason, PoseText, Request, balanced};
+use handstand::synth::{Design, DesignError, PoseText, Request, balanced};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -152,7 +152,7 @@ fn a_branch_that_no_drive_reaches_is_named() {
     let error = Design::of(&model, &request).unwrap_err();
     let said = error.to_string();
     assert!(
-        matches!(error, DesignError::Uncontrollable { .. }),
+        matches!(&error, DesignError::Mode(stuck) if stuck.is_unreached),
         "{said}"
     );
     assert!(
@@ -184,18 +184,24 @@ fn poses_are_refused_by_name() {
     let resolve = |text: &str| text.parse::<PoseText>().unwrap().resolve(&model);
     assert_eq!(resolve("roll=0.2").unwrap(), [0.0, 1.0, 0.2]);
     assert_eq!(resolve("3=0.2, slew=1").unwrap(), [1.0, 1.0, 0.2]);
-    let refused = |text: &str| match resolve(text) {
-        Err(DesignError::Pose(reason)) => reason,
-        other => panic!("{text}: {other:?}"),
-    };
-    assert!(matches!(refused("rol=0.2"), PoseReason::Unknown { .. }));
-    assert!(matches!(refused("4=0.2"), PoseReason::Unknown { .. }));
-    assert!(matches!(refused("roll=0.2,3=1"), PoseReason::Twice { .. }));
-    assert!(matches!(refused("0,1"), PoseReason::Size { angles: 2, .. }));
-    assert!(matches!(
-        refused("luff=0.4"),
-        PoseReason::BeyondRange { .. }
-    ));
-    assert!(matches!(refused("upright"), PoseReason::Upright { .. }));
-    assert!(matches!(refused("roll=inf"), PoseReason::NotNumber(_)));
+    let range = "beyond its range from 0.5 to 1.5 rad in the robot's file";
+    for (text, said) in [
+        ("rol=0.2", "has no joint `rol`"),
+        ("4=0.2", "has no joint `4`"),
+        ("roll=0.2,3=1", "the pose gives joint 3 twice"),
+        ("0,1", "the pose has 2 angles, the model 3 joints"),
+        ("luff=0.4", range),
+        (
+            "upright",
+            "is a robot in space, and upright is a pose of planar chains",
+        ),
+        ("roll=inf", "the pose has an angle of inf"),
+    ] {
+        match resolve(text) {
+            Err(DesignError::Request(problem)) => {
+                assert!(problem.what.ends_with(said), "{text}: {problem}");
+            }
+            other => panic!("{text}: {other:?}"),
+        }
+    }
 }

@@ -6,7 +6,7 @@ pub use fixed::FixedDesign;
 
 use super::controllability::{Controllability, controllability, observability};
 use super::eigen::{largest, poles};
-use super::error::{DesignError, MOST_GROWTH};
+use super::error::DesignError;
 use super::estimator::{Compensator, Estimator, kalman, lqg, rounding_variance};
 use super::gains::{Gains, dlqr, lqr};
 use super::integral::Integral;
@@ -93,7 +93,10 @@ impl Design {
         let slide = model.joints.iter().position(|joint| joint.slide.is_some());
         if let (Some(joint), true) = (slide, request.sensors.is_some()) {
             let joint = JointNames::of(model).label(joint);
-            return Err(DesignError::SlideFiltered { joint });
+            return Err(DesignError::model(
+                format!("joint {joint} slides, and the filter measures angles and a gyro"),
+                "leave --lqg out",
+            ));
         }
         let Linearisation {
             plant,
@@ -203,7 +206,13 @@ fn named(
         Time::Continuous => None,
         Time::Sampled { ts_s, .. } => Some(ts_s),
     };
-    error.of_states(&states(model, &[], integral, 0), ts_s)
+    match error {
+        DesignError::Mode(stuck) => {
+            let states = states(model, &[], integral, 0);
+            stuck.of_states(&states, ts_s).into()
+        }
+        error => error,
+    }
 }
 
 /// The gains, the sampled plant with its delay, Q and R.
@@ -222,7 +231,10 @@ fn solved(
     };
     let Time::Sampled { ts_s, delay_s } = request.time else {
         if integral.is_some() {
-            return Err(DesignError::IntegralContinuous);
+            return Err(DesignError::request(
+                "integral action sums angles sample by sample, and continuous time has no samples",
+                "leave out one of the two",
+            ));
         }
         let [q, r] = weigh(plant.a.nrows())?;
         return Ok((lqr(plant, &q, &r)?, None, [q, r]));
@@ -245,17 +257,13 @@ fn solved(
 /// the plant in continuous time.
 fn by_sampling(error: DesignError, plant: &Continuous, ts_s: f64, sums: bool) -> DesignError {
     match error {
-        DesignError::Uncontrollable { mode, .. }
+        DesignError::Mode(stuck)
             if !sums
-                && mode.mode.pole.norm() <= MOST_GROWTH
+                && stuck.is_unreached
                 && controllability(&plant.a, &plant.b).is_ok_and(|it| it.is_full()) =>
         {
             let fastest = poles(&plant.a).map_or(0.0, |poles| largest(&poles));
-            DesignError::LostBySampling {
-                mode,
-                ts_s,
-                faster: fastest * ts_s > 1.0,
-            }
+            stuck.lost_by_sampling(ts_s, fastest * ts_s > 1.0).into()
         }
         error => error,
     }
@@ -274,7 +282,6 @@ fn point(pose_rad: &[f64], sums: usize, inputs: &[f64], delayed: usize) -> Vec<f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Reason as _;
     use std::path::Path;
 
     const PENDULUM: &str = r#"
@@ -319,16 +326,16 @@ input = { column = "torque_nm", unit = "N m" }
         assert!(design.controllability.is_full());
         let half_period_s = std::f64::consts::PI / design.poles[0].im.abs();
         let error = hanging(half_period_s).unwrap_err();
-        let DesignError::LostBySampling { mode, faster, .. } = &error else {
+        let DesignError::Mode(stuck) = &error else {
             panic!("{error}")
         };
-        assert!(*faster && mode.ts_s == Some(half_period_s), "{error:?}");
+        assert_eq!(stuck.mode.ts_s, Some(half_period_s), "{error:?}");
         let said = error.to_string();
         assert!(
             said.contains("no input reaches it, though in continuous time") && said.contains("q1"),
             "{said}"
         );
-        assert_eq!(error.remedy(), "sample faster");
+        assert_eq!(error.problem().remedy, "sample faster");
         assert!(hanging(0.9 * half_period_s).is_ok());
     }
 }

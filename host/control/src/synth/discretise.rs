@@ -88,7 +88,10 @@ pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete, Desi
     }
     let c = plant.c.clone().resize_horizontally(size, 0.0);
     if a.iter().chain(b.iter()).any(|value| !value.is_finite()) {
-        return Err(DesignError::GrowsWithinSample(ts_s));
+        return Err(DesignError::model(
+            format!("the plant grows beyond all numbers within one sample of {ts_s} s"),
+            "sample faster",
+        ));
     }
     Ok(Discrete {
         a,
@@ -101,14 +104,16 @@ pub fn zoh(plant: &Continuous, ts_s: f64, delay_s: f64) -> Result<Discrete, Desi
 
 fn check(ts_s: f64, delay_s: f64) -> Result<(), DesignError> {
     if !(ts_s > 0.0 && ts_s.is_finite()) {
-        return Err(DesignError::SamplingTime(ts_s));
+        return Err(DesignError::request(
+            format!("a sampling time of {ts_s} s"),
+            "give seconds above 0",
+        ));
     }
     if !(delay_s >= 0.0 && delay_s <= MOST_DELAYED as f64 * ts_s) {
-        return Err(DesignError::Delay {
-            delay_s,
-            ts_s,
-            most_samples: MOST_DELAYED,
-        });
+        return Err(DesignError::request(
+            format!("a delay of {delay_s} s at a sampling time of {ts_s} s"),
+            format!("give a delay from 0 to {MOST_DELAYED} samples"),
+        ));
     }
     Ok(())
 }

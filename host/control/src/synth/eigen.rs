@@ -27,7 +27,14 @@ pub fn poles(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, DesignError> {
             return Ok(poles);
         }
     }
-    Err(DesignError::Eigenvalues)
+    Err(no_eigenvalues())
+}
+
+pub(super) fn no_eigenvalues() -> DesignError {
+    DesignError::model(
+        "the eigenvalues of the system matrix cannot be found",
+        "look for entries that are not numbers or of very different size",
+    )
 }
 
 /// A matrix without the states that act on no other or on which no other acts, and their

@@ -1,10 +1,11 @@
 //! The stationary Kalman filter, and with gains the controller that needs no measured state (LQG).
 
 use super::eigen::{poles, slowest_first};
-use super::error::{DesignError, RiccatiRole};
+use super::error::DesignError;
 use super::gains::Gains;
 use super::riccati::{Problem, TimeDomain};
 use super::system::Discrete;
+use super::unsolvable::RiccatiRole;
 use super::weights::{self, Sign};
 use nalgebra::{Complex, DMatrix, stack};
 
@@ -66,9 +67,12 @@ pub fn kalman(
         .ok_or_else(|| problem.unsolvable(RiccatiRole::Estimator))?;
     let covariance = solution.x;
     let cp = &plant.c * &covariance;
-    let innovation = (&cp * &c + measurement)
-        .cholesky()
-        .ok_or(DesignError::Innovation)?;
+    let innovation = (&cp * &c + measurement).cholesky().ok_or_else(|| {
+        DesignError::model(
+            "the innovation's covariance is not positive definite",
+            "raise the measurement noise V",
+        )
+    })?;
     let gain = innovation.solve(&cp).transpose();
     let mut poles = poles(&(&plant.a - &plant.a * &gain * &plant.c))?;
     slowest_first(&mut poles);

@@ -1,9 +1,10 @@
 //! The linear-quadratic regulator, continuous and sampled.
 
 use super::eigen::{poles, slowest_first};
-use super::error::{DesignError, RiccatiRole};
+use super::error::DesignError;
 use super::riccati::{Problem, TimeDomain};
 use super::system::{Continuous, Discrete};
+use super::unsolvable::RiccatiRole;
 use super::weights::{self, Sign};
 use nalgebra::{Complex, DMatrix};
 

@@ -5,6 +5,7 @@
 //! gravity balances them. (Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed., section 4.5.)
 
 use super::error::DesignError;
+use super::quantise::positive;
 use super::signal::{Signal, of_joint};
 use super::system::Discrete;
 use super::weight::Weight;
@@ -41,15 +42,7 @@ impl Integral {
     pub(super) fn of(model: &Model, weight: &Weight) -> Result<Integral, DesignError> {
         let joints = model.driven_joints();
         let weights = weight.diagonal("the weight of the integrals", joints.len())?;
-        let bad = |weight: &f64| !(*weight > 0.0 && weight.is_finite());
-        if let Some(index) = weights.iter().position(bad) {
-            return Err(DesignError::NotPositive {
-                what: "weight",
-                of: "integral",
-                index,
-                value: weights[index],
-            });
-        }
+        positive("weight", "integral", &weights, joints.len())?;
         Ok(Integral { joints, weights })
     }
 

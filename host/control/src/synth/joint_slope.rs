@@ -145,12 +145,16 @@ impl<'a> JointAt<'a> {
         } else if needed_nm.abs() <= slack_nm {
             None
         } else {
-            return Err(DesignError::NoEquilibrium {
-                joint: self.label(),
-                torque_nm: needed_nm,
-                angle_rad: self.pose_rad,
-                units: self.units,
-            });
+            let [angle_unit, _, torque_unit] = self.units;
+            return Err(DesignError::model(
+                format!(
+                    "joint {} is passive and {needed_nm:.3e} {torque_unit} would have to hold it \
+                     at {} {angle_unit}: the pose is no equilibrium",
+                    self.label(),
+                    self.pose_rad
+                ),
+                "choose a pose in which every passive joint balances; --balance finds the nearest",
+            ));
         };
         Ok(HeldJoint {
             slope,
@@ -182,11 +186,14 @@ impl<'a> JointAt<'a> {
             }
             at.duty += off_nm / slope.per_duty;
         }
-        Err(DesignError::DriveTooWeak {
-            joint: self.label(),
-            torque_nm: needed_nm,
-            units: self.units,
-        })
+        Err(DesignError::model(
+            format!(
+                "joint {} needs {needed_nm:.3} {} to hold the pose, more than its drive can give",
+                self.label(),
+                self.units[2]
+            ),
+            "choose a pose that asks less of it",
+        ))
     }
 
     /// Torque of the drive at a duty, N m, with its slope. An effect without a slope still limits

@@ -36,9 +36,10 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearisation, Desig
     let n = model.link_count();
     let driven = model.driven_joints();
     if driven.is_empty() {
-        return Err(DesignError::NothingDriven {
-            model: model.name.clone(),
-        });
+        return Err(DesignError::model(
+            format!("no joint of `{}` is driven", model.name),
+            "give a [[joint]] another drive than passive",
+        ));
     }
     // The model's own angles are `convention` times the relative ones.
     let (convention, back) = match model.angles {
@@ -58,9 +59,7 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearisation, Desig
         per_input[(joint, input)] = point.joints[joint].per_input;
     }
     let mass = point.rigid.mass.clone();
-    let mass = mass.cholesky().ok_or_else(|| DesignError::NoInertia {
-        model: model.name.clone(),
-    })?;
+    let mass = mass.cholesky().ok_or_else(|| no_inertia(model))?;
     let accelerate = |torque: DMatrix<f64>| &convention * mass.solve(&torque);
     let damping = accelerate(diagonal(|s| s.per_rad_s)) * &back;
     let a = stack![0, DMatrix::identity(n, n); accelerate(per_rad) * &back, damping];
@@ -75,6 +74,17 @@ pub fn linearise(model: &Model, pose_rad: &[f64]) -> Result<Linearisation, Desig
         inputs: point.inputs,
         omitted: point.omitted,
     })
+}
+
+/// Masses and inertias with which some motion has no inertia.
+pub(super) fn no_inertia(model: &Model) -> DesignError {
+    DesignError::model(
+        format!(
+            "the masses and inertias of `{}` do not make a positive inertia",
+            model.name
+        ),
+        "give every link a mass and an inertia",
+    )
 }
 
 #[cfg(test)]

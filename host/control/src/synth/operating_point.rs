@@ -83,9 +83,9 @@ pub fn input_delay_s(model: &Model) -> Result<f64, DesignError> {
     let first = delays.first().copied().unwrap_or(0.0);
     match delays.iter().find(|&&delay| delay != first) {
         None => Ok(first),
-        Some(other) => Err(DesignError::DelaysDiffer {
-            first_s: first,
-            other_s: *other,
-        }),
+        Some(other) => Err(DesignError::model(
+            format!("the drives differ in delay: {first} s and {other} s"),
+            "give every driven joint the same delay, or choose one with --delay",
+        )),
     }
 }

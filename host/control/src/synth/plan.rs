@@ -1,9 +1,8 @@
 //! Reads a design back from the JSON that `handstand gains --state-space FILE.json` writes.
 
-use crate::error::{Error, Place, Reason, Result};
+use crate::error::{Error, Place, Problem, Result};
 use crate::model::Model;
 use serde_json::Value;
-use std::borrow::Cow;
 use std::path::Path;
 
 /// Sampling times that can be simulated, s.
@@ -24,76 +23,14 @@ pub struct StateFeedbackPlan {
     pub delay_s: f64,
 }
 
-/// Why a plan is refused.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PlanReason {
-    /// Broken JSON.
-    #[error("not JSON: {message}")]
-    NotJson {
-        /// What the parser says.
-        message: String,
-    },
-    /// A key that is missing or holds something else.
-    #[error("`{key}` holds {found}, not {expected}")]
-    WrongValue {
-        /// The key.
-        key: String,
-        /// What is there.
-        found: String,
-        /// What belongs there.
-        expected: &'static str,
-    },
-    /// A list of another length than the model asks for.
-    #[error("`{key}` has {found} values, but `{model}` with this plan needs {needed}")]
-    Size {
-        /// The key.
-        key: String,
-        /// Values there.
-        found: usize,
-        /// Values needed.
-        needed: usize,
-        /// The model's name.
-        model: String,
-    },
-    /// Inputs that come later than the gains compensate.
-    #[error("`sampled.delay_s` is {delay_s} s, but the gains hold {delayed_inputs} past inputs")]
-    Delay {
-        /// The delay, s.
-        delay_s: f64,
-        /// Past inputs in the state.
-        delayed_inputs: usize,
-    },
-    /// A plan with integral action.
-    #[error("`integral` is set: the plan's law acts on sums of angles too")]
-    Integral,
-    /// A plan with an estimator.
-    #[error("`estimator` is set: the plan's law acts on estimated states")]
-    Estimator,
-}
-
-impl Reason for PlanReason {
-    fn remedy(&self) -> Cow<'_, str> {
-        match self {
-            PlanReason::Estimator => {
-                "compare with the plan of a robot that measures its states: `handstand gains \
-                 --state-space FILE.json` without --lqg"
-            }
-            PlanReason::Integral => {
-                "give the plan of a law on the states alone: `handstand gains --state-space \
-                 FILE.json` without --integral"
-            }
-            PlanReason::Size { .. } => "give the plan that was made for this robot",
-            _ => "write the plan with `handstand gains MODEL --state-space FILE.json`",
-        }
-        .into()
-    }
-}
+/// What writes a plan.
+const WRITE: &str = "write the plan with `handstand gains MODEL --state-space FILE.json`";
 
 impl StateFeedbackPlan {
     /// Reads the plan of a robot like `model`.
     ///
     /// # Errors
-    /// A file that cannot be read; [`PlanReason`] with the key that is missing, wrong, or does not
+    /// A file that cannot be read; a key that is missing, wrong, or does not
     /// fit the model's number of joints and drives.
     pub fn load(path: &Path, model: &Model) -> Result<StateFeedbackPlan> {
         let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
@@ -107,16 +44,19 @@ impl StateFeedbackPlan {
     pub fn parse(bytes: &[u8], path: &Path, model: &Model) -> Result<StateFeedbackPlan> {
         let value: Value = serde_json::from_slice(bytes).map_err(|error| {
             let place = Place::at(path, error.line().max(1), error.column().max(1));
-            let message = error.to_string();
-            Error::refused(place, PlanReason::NotJson { message })
+            Error::data(place, format!("not JSON: {error}"), WRITE)
         })?;
-        plan(&value, model).map_err(|reason| Error::refused(Place::file(path), reason))
+        plan(&value, model).map_err(|problem| problem.at(Place::file(path)))
     }
 }
 
-fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, PlanReason> {
+fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, Problem> {
     if value.get("integral").is_some_and(|it| !it.is_null()) {
-        return Err(PlanReason::Integral);
+        return Err(Problem::new(
+            "`integral` is set: the plan's law acts on sums of angles too",
+            "give the plan of a law on the states alone: `handstand gains --state-space \
+             FILE.json` without --integral",
+        ));
     }
     let joints = model.link_count();
     let drives = model.driven_joints().len();
@@ -124,38 +64,35 @@ fn plan(value: &Value, model: &Model) -> Result<StateFeedbackPlan, PlanReason> {
     let timing = sampled.map(timing).transpose()?;
     let past = timing.map_or(0, |timing| timing.delayed_inputs);
     let states = past.saturating_mul(drives).saturating_add(2 * joints);
-    let sized = |key: &str, list: Vec<f64>, needed| {
-        if list.len() == needed {
-            Ok(list)
+    let has = |key: &str, found: usize, needed: usize| {
+        if found == needed {
+            Ok(())
         } else {
-            Err(PlanReason::Size {
-                key: key.to_string(),
-                found: list.len(),
-                needed,
-                model: model.name.clone(),
-            })
+            let plan_needs = format!("`{}` with this plan needs {needed}", model.name);
+            Err(Problem::new(
+                format!("`{key}` has {found} values, but {plan_needs}"),
+                "give the plan that was made for this robot",
+            ))
         }
     };
+    let sized = |key: &str, list: Vec<f64>, needed| has(key, list.len(), needed).map(|()| list);
     let list = |key, needed| sized(key, numbers(key, value.get(key))?, needed);
     let u0 = list("u0", drives)?;
     let pose_rad = list("x0", states)?[..joints].to_vec();
     let rows = value.get("k").and_then(Value::as_array);
     let rows = rows.ok_or_else(|| wrong("k", value.get("k"), "a list of rows"))?;
-    if rows.len() != drives {
-        return Err(PlanReason::Size {
-            key: "k".to_string(),
-            found: rows.len(),
-            needed: drives,
-            model: model.name.clone(),
-        });
-    }
+    has("k", rows.len(), drives)?;
     let row = |(index, row)| {
         let key = format!("k[{index}]");
         sized(&key, numbers(&key, Some(row))?, states)
     };
     let k = rows.iter().enumerate().map(row).collect::<Result<_, _>>()?;
     if value.get("estimator").is_some_and(|e| !e.is_null()) {
-        return Err(PlanReason::Estimator);
+        return Err(Problem::new(
+            "`estimator` is set: the plan's law acts on estimated states",
+            "compare with the plan of a robot that measures its states: `handstand gains \
+             --state-space FILE.json` without --lqg",
+        ));
     }
     Ok(StateFeedbackPlan {
         k,
@@ -174,7 +111,7 @@ struct PlanTiming {
     delayed_inputs: usize,
 }
 
-fn timing(sampled: &Value) -> Result<PlanTiming, PlanReason> {
+fn timing(sampled: &Value) -> Result<PlanTiming, Problem> {
     let number = |key: &'static str, expected| {
         let value = sampled.get(key);
         let number = value.and_then(Value::as_f64).filter(|n| *n >= 0.0);
@@ -193,10 +130,12 @@ fn timing(sampled: &Value) -> Result<PlanTiming, PlanReason> {
         .ok_or_else(|| wrong("sampled.delayed_inputs", past, "a number of past inputs"))?;
     // The delay is rounded in its last digit; a sample more would be another plan.
     if delay_s > (delayed_inputs as f64 + 1e-6) * ts_s {
-        return Err(PlanReason::Delay {
-            delay_s,
-            delayed_inputs,
-        });
+        return Err(Problem::new(
+            format!(
+                "`sampled.delay_s` is {delay_s} s, but the gains hold {delayed_inputs} past inputs"
+            ),
+            WRITE,
+        ));
     }
     Ok(PlanTiming {
         ts_s,
@@ -205,7 +144,7 @@ fn timing(sampled: &Value) -> Result<PlanTiming, PlanReason> {
     })
 }
 
-fn numbers(key: &str, value: Option<&Value>) -> Result<Vec<f64>, PlanReason> {
+fn numbers(key: &str, value: Option<&Value>) -> Result<Vec<f64>, Problem> {
     let list = value.and_then(Value::as_array);
     let list = list.ok_or_else(|| wrong(key, value, "a list of numbers"))?;
     let number = |(index, value): (usize, &Value)| {
@@ -215,13 +154,9 @@ fn numbers(key: &str, value: Option<&Value>) -> Result<Vec<f64>, PlanReason> {
     list.iter().enumerate().map(number).collect()
 }
 
-fn wrong(key: &str, value: Option<&Value>, expected: &'static str) -> PlanReason {
-    let found = value.map_or("nothing".to_string(), |value| {
+fn wrong(key: &str, value: Option<&Value>, expected: &str) -> Problem {
+    let found: String = value.map_or("nothing".to_string(), |value| {
         value.to_string().chars().take(40).collect()
     });
-    PlanReason::WrongValue {
-        key: key.to_string(),
-        found,
-        expected,
-    }
+    Problem::new(format!("`{key}` holds {found}, not {expected}"), WRITE)
 }

@@ -63,5 +63,8 @@ pub fn balanced(model: &Model, pose_rad: &[f64]) -> Result<Vec<f64>, DesignError
             return Ok(model.convention_rad(&angle_rad));
         }
     }
-    Err(DesignError::EquilibriumNotFound)
+    Err(DesignError::model(
+        "no equilibrium was found near this pose",
+        "start from a pose nearer to balance",
+    ))
 }

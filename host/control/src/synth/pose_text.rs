@@ -1,10 +1,8 @@
 //! Poses as people write them: `upright`, an angle for every joint, or some joints by name.
 
 use super::error::DesignError;
-use crate::error::Reason;
 use crate::model::suggest::suggest;
 use crate::model::{JointNames, Model, default_pose, upright};
-use std::borrow::Cow;
 use std::str::FromStr;
 
 /// A pose as it is asked for; angles are the model's own, rad, of slides m.
@@ -17,57 +15,6 @@ pub enum PoseText {
     /// Angles of these joints, by name or number from 1; the others are as in
     /// [`default_pose`].
     Named(Vec<(String, f64)>),
-}
-
-/// Why a model has no such pose.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages say what the fields are")]
-pub enum PoseReason {
-    #[error("the pose has {angles} angles, the model {} joints", joints.len())]
-    Size { angles: usize, joints: Vec<String> },
-    #[error("the pose has an angle of {0}")]
-    NotNumber(f64),
-    #[error("`{model}` is a robot in space, and upright is a pose of planar chains")]
-    Upright { model: String },
-    #[error("`{model}` has no joint `{name}`")]
-    Unknown {
-        model: String,
-        name: String,
-        joints: Vec<String>,
-    },
-    #[error("the pose gives joint {name} twice")]
-    Twice { name: String },
-    #[error(
-        "the pose has joint {name} at {angle} {unit}, beyond its range from {low} to {high} {unit} \
-         in the robot's file"
-    )]
-    BeyondRange {
-        name: String,
-        angle: f64,
-        low: f64,
-        high: f64,
-        unit: &'static str,
-    },
-}
-
-impl Reason for PoseReason {
-    fn remedy(&self) -> Cow<'_, str> {
-        match self {
-            PoseReason::Size { joints, .. } => format!(
-                "give one angle per joint, in this order: {}; or some by name, as `{}=0.3`",
-                joints.join(", "),
-                joints.last().map_or("1", String::as_str)
-            )
-            .into(),
-            PoseReason::NotNumber(_) => "give angles in rad".into(),
-            PoseReason::Upright { .. } => {
-                "give the angles of its file, by joint: `--pose shoulder=0.3,elbow=-0.5`".into()
-            }
-            PoseReason::Unknown { name, joints, .. } => suggest(name, joints).into(),
-            PoseReason::Twice { .. } => "give it once".into(),
-            PoseReason::BeyondRange { .. } => "choose an angle within".into(),
-        }
-    }
 }
 
 impl FromStr for PoseText {
@@ -109,9 +56,13 @@ impl PoseText {
     pub fn resolve(&self, model: &Model) -> Result<Vec<f64>, DesignError> {
         let pose_rad = match self {
             PoseText::Upright if model.is_in_space() => {
-                return Err(DesignError::Pose(PoseReason::Upright {
-                    model: model.name.clone(),
-                }));
+                return Err(DesignError::request(
+                    format!(
+                        "`{}` is a robot in space, and upright is a pose of planar chains",
+                        model.name
+                    ),
+                    "give the angles of its file, by joint: `--pose shoulder=0.3,elbow=-0.5`",
+                ));
             }
             PoseText::Upright => upright(model),
             PoseText::Angles(angles) => angles.clone(),
@@ -136,17 +87,21 @@ impl PoseText {
     }
 }
 
-fn named_pose(model: &Model, named: &[(String, f64)]) -> Result<Vec<f64>, PoseReason> {
+fn named_pose(model: &Model, named: &[(String, f64)]) -> Result<Vec<f64>, DesignError> {
     let mut pose_rad = default_pose(model);
     let mut given = vec![false; pose_rad.len()];
     for (name, angle) in named {
-        let joint = joint(model, name).ok_or_else(|| PoseReason::Unknown {
-            model: model.name.clone(),
-            name: name.clone(),
-            joints: labels(model),
+        let joint = joint(model, name).ok_or_else(|| {
+            DesignError::request(
+                format!("`{}` has no joint `{name}`", model.name),
+                suggest(name, &labels(model)),
+            )
         })?;
         if std::mem::replace(&mut given[joint], true) {
-            return Err(PoseReason::Twice { name: name.clone() });
+            return Err(DesignError::request(
+                format!("the pose gives joint {name} twice"),
+                "give it once",
+            ));
         }
         pose_rad[joint] = *angle;
     }
@@ -174,27 +129,41 @@ fn labels(model: &Model) -> Vec<String> {
 ///
 /// # Errors
 /// What is not so.
-pub(super) fn check_pose(model: &Model, pose_rad: &[f64]) -> Result<(), PoseReason> {
+pub(super) fn check_pose(model: &Model, pose_rad: &[f64]) -> Result<(), DesignError> {
     if pose_rad.len() != model.link_count() {
-        return Err(PoseReason::Size {
-            angles: pose_rad.len(),
-            joints: labels(model),
-        });
+        let joints = labels(model);
+        return Err(DesignError::request(
+            format!(
+                "the pose has {} angles, the model {} joints",
+                pose_rad.len(),
+                joints.len()
+            ),
+            format!(
+                "give one angle per joint, in this order: {}; or some by name, as `{}=0.3`",
+                joints.join(", "),
+                joints.last().map_or("1", String::as_str)
+            ),
+        ));
     }
     if let Some(angle) = pose_rad.iter().find(|angle| !angle.is_finite()) {
-        return Err(PoseReason::NotNumber(*angle));
+        return Err(DesignError::request(
+            format!("the pose has an angle of {angle}"),
+            "give angles in rad",
+        ));
     }
     for (joint, angle) in pose_rad.iter().enumerate() {
         if let Some((low, high)) = model.range(joint)
             && !(low..=high).contains(angle)
         {
-            return Err(PoseReason::BeyondRange {
-                name: JointNames::of(model).label(joint),
-                angle: *angle,
-                low,
-                high,
-                unit: model.joints[joint].units()[0],
-            });
+            let name = JointNames::of(model).label(joint);
+            let unit = model.joints[joint].units()[0];
+            return Err(DesignError::request(
+                format!(
+                    "the pose has joint {name} at {angle} {unit}, beyond its range from {low} to \
+                     {high} {unit} in the robot's file"
+                ),
+                "choose an angle within",
+            ));
         }
     }
     Ok(())

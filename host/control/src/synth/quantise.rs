@@ -54,7 +54,10 @@ pub fn quantise(
 ) -> Result<FixedLaw, DesignError> {
     let bits = format.bits;
     if !(8..=32).contains(&bits) {
-        return Err(DesignError::WordLength(bits));
+        return Err(DesignError::request(
+            format!("a word of {bits} bits"),
+            "choose 8 to 32 bits",
+        ));
     }
     positive("range", "state", &ranges.state, k.ncols())?;
     positive("range", "input", &ranges.input, k.nrows())?;
@@ -150,14 +153,17 @@ impl GainRow {
     /// The longest shift that fits with a given step.
     fn shift_for(&self, step: f64, input: usize) -> Result<(u32, f64), DesignError> {
         let fits = |shift: &u32| self.fits(2f64.powi(*shift as i32) / step, *shift);
-        let shift = (0..2 * self.bits - 1)
-            .rev()
-            .find(fits)
-            .ok_or(DesignError::Overflow {
-                input,
-                bits: self.bits,
-                step,
-            })?;
+        let shift = (0..2 * self.bits - 1).rev().find(fits).ok_or_else(|| {
+            DesignError::model(
+                format!(
+                    "the gains of input {} overflow {} bits: the sum over the declared ranges \
+                         is too large for its step of {step}",
+                    input + 1,
+                    self.bits
+                ),
+                "declare smaller ranges, or take a coarser input step",
+            )
+        })?;
         Ok((shift, step))
     }
 }
@@ -169,24 +175,23 @@ pub(super) fn positive(
     count: usize,
 ) -> Result<(), DesignError> {
     if values.len() != count {
-        return Err(DesignError::Count {
-            what,
-            of,
-            found: values.len(),
-            needed: count,
-        });
+        return Err(DesignError::request(
+            format!(
+                "{} values of {of} {what}, but there are {count} {of}s",
+                values.len()
+            ),
+            format!("give one per {of}, or one for all"),
+        ));
     }
     match values
         .iter()
         .position(|value| !(*value > 0.0 && value.is_finite()))
     {
         None => Ok(()),
-        Some(at) => Err(DesignError::NotPositive {
-            what,
-            of,
-            index: at,
-            value: values[at],
-        }),
+        Some(at) => Err(DesignError::request(
+            format!("the {what} of {of} {} is {}", at + 1, values[at]),
+            "give a number above 0",
+        )),
     }
 }
 
@@ -210,13 +215,15 @@ fn steps(
         .position(|(step, reach)| reach / step > word);
     match beyond {
         None => Ok(given.to_vec()),
-        Some(at) => Err(DesignError::BeyondWord {
-            of,
-            index: at,
-            steps: reach[at] / given[at],
-            step: given[at],
-            word,
-        }),
+        Some(at) => Err(DesignError::model(
+            format!(
+                "{of} {} reaches {:.0} steps of {}, but a word holds {word}",
+                at + 1,
+                reach[at] / given[at],
+                given[at]
+            ),
+            "declare a smaller range, or a coarser step",
+        )),
     }
 }
 

@@ -4,7 +4,7 @@ use super::cost_weights::CostWeights;
 use super::error::DesignError;
 use super::linearise::linearise;
 use super::quantise::{Format, positive};
-use super::signal::{default_limit, input};
+use super::signal::{Signal, default_limit, input};
 use super::weight::Weight;
 use crate::model::{Model, default_pose};
 use crate::sim::closed_loop::Velocity;
@@ -95,11 +95,13 @@ impl Request {
         positive("range", "input", &ranges, driven.len())?;
         for ((limit, held), &joint) in ranges.iter().zip(held).zip(&driven) {
             if held.abs() >= *limit {
-                return Err(DesignError::HeldBeyondLimit {
-                    input: input(model, joint),
-                    held: *held,
-                    limit: *limit,
-                });
+                let Signal { name, unit, .. } = input(model, joint);
+                return Err(DesignError::request(
+                    format!(
+                        "{name} of {held:.4} {unit} holds the pose, and its limit is {limit} {unit}"
+                    ),
+                    "raise the limit (--limit), or choose a pose that asks less of the drive",
+                ));
             }
         }
         Ok(ranges)

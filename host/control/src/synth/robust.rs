@@ -63,7 +63,12 @@ pub fn multi_model(
 ) -> Result<DMatrix<f64>, DesignError> {
     let (m, n) = start.shape();
     let mut k = start.clone();
-    let (mut cost, gradient) = mean_cost(plants, q, r, &k).ok_or(DesignError::UnstableStart)?;
+    let (mut cost, gradient) = mean_cost(plants, q, r, &k).ok_or_else(|| {
+        DesignError::model(
+            "the gain to start from lets one of the plants fall",
+            "start from plants that differ less",
+        )
+    })?;
     let flat = |matrix: &DMatrix<f64>| DVector::from_column_slice(matrix.as_slice());
     let mut slope = flat(&gradient);
     let mut curvature =
@@ -110,8 +115,12 @@ pub fn multi_model_continuation<E: From<DesignError>>(
         .resize(nominal[0].a.nrows(), nominal[0].a.nrows(), 0.0);
     for stage in 1..=stages {
         let share = stage as f64 / stages as f64;
-        k = multi_model(&spread(share)?, q, r, &k)
-            .map_err(|_| DesignError::SpreadTooWide { share })?;
+        k = multi_model(&spread(share)?, q, r, &k).map_err(|_| {
+            DesignError::model(
+                format!("no gain was found that holds all plants at {share:.2} of the spread"),
+                "ask for less spread, or for more stages on the way",
+            )
+        })?;
     }
     Ok(k)
 }
@@ -224,6 +233,9 @@ mod tests {
             .min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
         assert!((k - best.unwrap()).abs() < 1e-3, "{k} {best:?}");
         let fallen = multi_model(&plants, &q, &r, &DMatrix::from_element(1, 1, 0.1)).unwrap_err();
-        assert_eq!(fallen, DesignError::UnstableStart);
+        assert_eq!(
+            fallen.to_string(),
+            "the gain to start from lets one of the plants fall"
+        );
     }
 }

@@ -5,8 +5,10 @@
 //! robot comes to rest where that is a lasting torque of its own making.
 
 use super::design::Design;
+use super::eigen::no_eigenvalues;
 use super::error::DesignError;
 use super::integral::Integral;
+use super::linearise::no_inertia;
 use super::operating_point::OperatingPoint;
 use crate::model::{Angles, Model};
 use nalgebra::{DMatrix, DVector};
@@ -51,7 +53,7 @@ pub fn stiffness(model: &Model, design: &Design) -> Result<Stiffness, DesignErro
         let closed = k.as_ref().map(|k| &design.plant.a - &design.plant.b * k);
         (k, closed.and_then(DMatrix::try_inverse))
     }) else {
-        return Err(DesignError::Eigenvalues);
+        return Err(no_eigenvalues());
     };
     let lean_per_torque = (-&closed * torque).rows(0, n).into_owned();
     let per_input = -&closed * &design.plant.b;
@@ -73,9 +75,7 @@ pub fn torque_inputs(model: &Model, pose_rad: &[f64]) -> Result<DMatrix<f64>, De
     let n = model.link_count();
     let point = OperatingPoint::of(model, pose_rad)?;
     let mass = point.rigid.mass.cholesky();
-    let mass = mass.ok_or_else(|| DesignError::NoInertia {
-        model: model.name.clone(),
-    })?;
+    let mass = mass.ok_or_else(|| no_inertia(model))?;
     let convention = match model.angles {
         Angles::Relative => DMatrix::identity(n, n),
         Angles::Absolute => DMatrix::from_element(n, n, 1.0).lower_triangle(),
@@ -104,7 +104,7 @@ fn with_sums(
         rest[(states + sum, *joint)] = 1.0;
     }
     let push = -torque.clone().resize_vertically(size, 0.0);
-    let lean = rest.lu().solve(&push).ok_or(DesignError::Eigenvalues)?;
+    let lean = rest.lu().solve(&push).ok_or_else(no_eigenvalues)?;
     Ok(lean.rows(0, states / 2).into_owned())
 }
 

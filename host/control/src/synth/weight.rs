@@ -1,8 +1,12 @@
 //! A square matrix as people give it: one number, a diagonal, or all of it.
 
 use super::error::DesignError;
+use super::weights::other_size;
 use nalgebra::DMatrix;
 use std::fmt;
+
+/// What mends a list of another length.
+const ONE_FOR_EACH: &str = "give one number for all, or one for each";
 
 /// One number stands for that times the identity.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,18 +45,14 @@ impl Weight {
                 Ok(DMatrix::from_diagonal(&values.clone().into()))
             }
             Weight::Matrix(matrix) if matrix.shape() == (size, size) => Ok(matrix.clone()),
-            Weight::Diagonal(values) => Err(DesignError::DiagonalSize {
-                name,
-                found: values.len(),
-                size,
-                of,
-            }),
-            Weight::Matrix(matrix) => Err(DesignError::MatrixSize {
-                name,
-                shape: matrix.shape(),
-                size,
-                of,
-            }),
+            Weight::Diagonal(values) => Err(DesignError::request(
+                format!(
+                    "{name} has {} values, but there are {size} {of}",
+                    values.len()
+                ),
+                ONE_FOR_EACH,
+            )),
+            Weight::Matrix(matrix) => Err(other_size(name, matrix, size, of)),
         }
     }
 
@@ -64,11 +64,13 @@ impl Weight {
         match self {
             Weight::Scalar(value) => Ok(vec![*value; size]),
             Weight::Diagonal(values) if values.len() == size => Ok(values.clone()),
-            _ => Err(DesignError::ListSize {
-                name,
-                found: self.size().unwrap_or(1),
-                size,
-            }),
+            _ => Err(DesignError::request(
+                format!(
+                    "{name} has {} values, but {size} are needed",
+                    self.size().unwrap_or(1)
+                ),
+                ONE_FOR_EACH,
+            )),
         }
     }
 }

@@ -31,10 +31,16 @@ pub(super) fn of(
     let least = least_eigenvalue(m);
     let slack = ROUNDING * size as f64 * m.amax();
     match sign {
-        Sign::Semidefinite if least < -slack => Err(DesignError::Indefinite { name, least }),
-        Sign::Definite if least.is_nan() || least <= slack => {
-            Err(DesignError::NotDefinite { name, least, of })
-        }
+        Sign::Semidefinite if least < -slack => Err(DesignError::request(
+            format!("{name} is not positive semidefinite: its least eigenvalue is {least:.3e}"),
+            format!(
+                "no weight or variance is negative: raise the eigenvalues of {name} to 0 or above"
+            ),
+        )),
+        Sign::Definite if least.is_nan() || least <= slack => Err(DesignError::request(
+            format!("{name} is not positive definite: its least eigenvalue is {least:.3e}"),
+            format!("give every one of the {of} a weight or variance above 0 in {name}"),
+        )),
         _ => Ok(()),
     }
 }
@@ -46,34 +52,43 @@ fn symmetric(
     of: &'static str,
 ) -> Result<(), DesignError> {
     if matrix.shape() != (size, size) {
-        return Err(DesignError::MatrixSize {
-            name,
-            shape: matrix.shape(),
-            size,
-            of,
-        });
+        return Err(other_size(name, matrix, size, of));
     }
     if let Some(value) = matrix.iter().find(|value| !value.is_finite()) {
-        return Err(DesignError::Entry {
-            name,
-            value: *value,
-        });
+        return Err(DesignError::request(
+            format!("{name} has an entry of {value}"),
+            "give numbers",
+        ));
     }
     let slack = ROUNDING * matrix.amax();
     for i in 0..size {
         for j in 0..i {
             let (below, above) = (matrix[(i, j)], matrix[(j, i)]);
             if (below - above).abs() > slack {
-                return Err(DesignError::Asymmetric {
-                    name,
-                    at: (i, j),
-                    below,
-                    above,
-                });
+                return Err(DesignError::model(
+                    format!(
+                        "{name} is not symmetric: entry ({}, {}) is {below}, entry ({}, {}) is \
+                         {above}",
+                        i + 1,
+                        j + 1,
+                        j + 1,
+                        i + 1
+                    ),
+                    format!("give its symmetric part, half of {name} plus its transpose"),
+                ));
             }
         }
     }
     Ok(())
+}
+
+/// A matrix that is not `size` x `size`.
+pub(super) fn other_size(name: &str, matrix: &DMatrix<f64>, size: usize, of: &str) -> DesignError {
+    let (rows, columns) = matrix.shape();
+    DesignError::model(
+        format!("{name} is {rows} x {columns}, but there are {size} {of}"),
+        format!("give {name} as {size} x {size}, as its diagonal, or as one number"),
+    )
 }
 
 fn least_eigenvalue(matrix: &DMatrix<f64>) -> f64 {

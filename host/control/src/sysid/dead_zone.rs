@@ -3,11 +3,10 @@
 
 use super::blocks::BlockMean;
 use super::dynamics::IntervalEstimate;
-use crate::error::Reason;
+use crate::error::Problem;
 use crate::fitting::quantile_975;
 use curve::{DeadZoneCurve, best};
 use serde::Serialize;
-use std::borrow::Cow;
 
 mod curve;
 
@@ -53,42 +52,12 @@ pub struct Inverse {
     pub limit: Option<f64>,
 }
 
-/// Why there is no map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum Unmapped {
-    /// Too few blocks on one side of zero.
-    #[error("{found} blocks of {side} inputs where {LEAST} are the least")]
-    OneSided {
-        /// `positive` or `negative`.
-        side: &'static str,
-        /// Blocks there.
-        found: usize,
-    },
-    /// No line outside the zone.
-    #[error("the output does not grow with {0} inputs")]
-    Flat(&'static str),
-}
-
-impl Reason for Unmapped {
-    fn remedy(&self) -> Cow<'_, str> {
-        Cow::Borrowed(match self {
-            Unmapped::OneSided { .. } => {
-                "a block counts where the input hardly changes over it and the one before: record \
-                 slow ramps or steps of a second to either side, or average over less: --block 0.1"
-            }
-            Unmapped::Flat(_) => {
-                "record inputs that move the servo, and check the columns' signs and units"
-            }
-        })
-    }
-}
-
 impl DeadZoneMap {
     /// Fits both sides.
     ///
     /// # Errors
     /// A side with too few blocks, or one that never moves.
-    pub fn fit(blocks: &[BlockMean]) -> Result<DeadZoneMap, Unmapped> {
+    pub fn fit(blocks: &[BlockMean]) -> Result<DeadZoneMap, Problem> {
         let side = |sign: f64, name: &'static str| {
             let points: Vec<(f64, f64)> = blocks
                 .iter()
@@ -142,22 +111,34 @@ impl Inverse {
     }
 }
 
-fn fit_side(points: &[(f64, f64)], name: &'static str) -> Result<Side, Unmapped> {
+fn fit_side(points: &[(f64, f64)], name: &'static str) -> Result<Side, Problem> {
     if points.len() < LEAST {
-        let (side, found) = (name, points.len());
-        return Err(Unmapped::OneSided { side, found });
+        return Err(Problem::new(
+            format!(
+                "{} blocks of {name} inputs where {LEAST} are the least",
+                points.len()
+            ),
+            "a block counts where the input hardly changes over it and the one before: record \
+             slow ramps or steps of a second to either side, or average over less: --block 0.1",
+        ));
     }
+    let flat = || {
+        Problem::new(
+            format!("the output does not grow with {name} inputs"),
+            "record inputs that move the servo, and check the columns' signs and units",
+        )
+    };
     let count = points.len() as f64;
     let criterion = |curve: &DeadZoneCurve, coefficients: f64| {
         count * (curve.cost(points) / count).max(f64::MIN_POSITIVE).ln() + coefficients * count.ln()
     };
-    let open = best(points, false).ok_or(Unmapped::Flat(name))?;
+    let open = best(points, false).ok_or_else(flat)?;
     // Schwarz's criterion decides whether a limit is seen.
     let curve = match best(points, true) {
         Some(limited) if criterion(&limited, 3.0) < criterion(&open, 2.0) => limited,
         _ => open,
     };
-    side(&curve, points).ok_or(Unmapped::Flat(name))
+    side(&curve, points).ok_or_else(flat)
 }
 
 /// Intervals from the normal matrix of what the points do touch.

@@ -20,13 +20,13 @@ mod text;
 mod tests;
 
 pub use blocks::{BlockMean, blocks};
-pub use dead_zone::{DeadZoneMap, Inverse, Side, Unmapped};
+pub use dead_zone::{DeadZoneMap, Inverse, Side};
 pub use dynamics::{Dynamics, IntervalEstimate, Pole, dynamics, settling_samples};
 pub use estimate::{Estimate, Unfitted, estimate};
 pub use model::TransferModel;
-pub use record::{OutputQuantity, Record, RecordReason, record, sampling_period_s, velocity};
+pub use record::{OutputQuantity, Record, record, sampling_period_s, velocity};
 pub use score::{FitScore, prediction_errors, score};
 pub use select::{FittedModel, TriedStructure, select, try_all};
-pub use structure::{FAMILIES, Family, Structure, StructureFault, StructureReason, structures};
-pub use supply::{NoLine, SupplyLine, errors as supply_errors};
+pub use structure::{FAMILIES, Family, Structure, structures};
+pub use supply::{SupplyLine, errors as supply_errors};
 pub use text::transfer_function;

@@ -1,8 +1,7 @@
 //! Input and output at equal steps of time: what a discrete-time model is fitted to.
 
-use crate::error::{Error, Place, Reason, Result};
+use crate::error::{Error, Place, Result};
 use crate::motion::Motion;
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// Largest departure of a time step from the sampling period, as a share of it.
@@ -59,45 +58,6 @@ pub enum OutputQuantity {
     Velocity,
 }
 
-/// Why a motion is no record.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RecordReason {
-    /// A time step more than a quarter off the sampling period.
-    #[error(
-        "samples {sample} and {} of {motion} are {step_s:.6} s apart where the sampling period is \
-         {ts_s:.6} s",
-        sample + 1
-    )]
-    UnequalSteps {
-        /// The motion's name.
-        motion: String,
-        /// Sample before the step, from 0.
-        sample: usize,
-        /// The step, s.
-        step_s: f64,
-        /// The sampling period, s.
-        ts_s: f64,
-    },
-    /// A joint without an input.
-    #[error("joint {} is passive: it has no input", joint + 1)]
-    Passive {
-        /// The joint, from 0.
-        joint: usize,
-    },
-}
-
-impl Reason for RecordReason {
-    fn remedy(&self) -> Cow<'_, str> {
-        Cow::Borrowed(match self {
-            RecordReason::UnequalSteps { .. } => {
-                "a discrete-time model needs equal steps: name a range of rows without the gap, \
-                 or set split_at_gap_s"
-            }
-            RecordReason::Passive { .. } => "name a driven joint with --joint",
-        })
-    }
-}
-
 /// The sampling period of the motions: the median of all time steps, s.
 pub fn sampling_period_s(motions: &[Motion]) -> f64 {
     let mut steps: Vec<f64> = motions
@@ -112,23 +72,30 @@ pub fn sampling_period_s(motions: &[Motion]) -> f64 {
 /// their first samples; of a velocity estimate the first sample does not count.
 ///
 /// # Errors
-/// [`RecordReason`]: a joint that nothing drives; a time step more than a quarter off `ts_s`, where
+/// A joint that nothing drives; a time step more than a quarter off `ts_s`, where
 /// a sample is missing.
 pub fn record(motion: &Motion, joint: usize, output: OutputQuantity, ts_s: f64) -> Result<Record> {
     for (k, pair) in motion.time_s.windows(2).enumerate() {
         let step = pair[1] - pair[0];
         if (step - ts_s).abs() > JITTER * ts_s {
-            let reason = RecordReason::UnequalSteps {
-                motion: motion.name.clone(),
-                sample: k,
-                step_s: step,
-                ts_s,
-            };
-            return Err(Error::refused(Place::file(&motion.source.path), reason));
+            return Err(Error::data(
+                Place::file(&motion.source.path),
+                format!(
+                    "samples {k} and {} of {} are {step:.6} s apart where the sampling period is \
+                     {ts_s:.6} s",
+                    k + 1,
+                    motion.name
+                ),
+                "a discrete-time model needs equal steps: name a range of rows without the gap, \
+                 or set split_at_gap_s",
+            ));
         }
     }
     let Some(input) = &motion.input[joint] else {
-        return Err(Error::Usage(Box::new(RecordReason::Passive { joint })));
+        return Err(Error::usage(
+            format!("joint {} is passive: it has no input", joint + 1),
+            "name a driven joint with --joint",
+        ));
     };
     let measured = &motion.position_rad[joint];
     Ok(match output {

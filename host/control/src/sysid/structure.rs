@@ -3,9 +3,8 @@
 //! All are cases of `A(q) y = B(q)/F(q) u + C(q)/D(q) e` (Ljung, System Identification, 2nd ed.
 //! 1999, eq. 4.33).
 
-use crate::error::{Error, Reason, Result};
+use crate::error::{Error, Result};
 use serde::Serialize;
-use std::borrow::Cow;
 use std::fmt;
 
 /// Most coefficients of one polynomial.
@@ -138,80 +137,49 @@ impl fmt::Display for Structure {
     }
 }
 
-/// A text that names no structures.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("'{text}': {fault}")]
-pub struct StructureReason {
-    /// The text.
-    pub text: String,
-    /// What is wrong with it.
-    pub fault: StructureFault,
-}
-
-/// What is wrong with the text of a structure.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages say what the fields are")]
-pub enum StructureFault {
-    #[error("no colon between family and orders")]
-    NoColon,
-    #[error("'{key}' is no family of models")]
-    UnknownFamily { key: String },
-    #[error("{found} orders, and {key} has {}: {}", names.len(), names.join(", "))]
-    Orders {
-        found: usize,
-        key: &'static str,
-        names: &'static [&'static str],
-    },
-    #[error(
-        "'{field}' is no order {name} from 0 to {MOST}, or makes more than {MOST_STRUCTURES} \
-         structures"
-    )]
-    Order { field: String, name: &'static str },
-    #[error("B needs a coefficient: nb is 1 or more")]
-    NoInput,
-}
-
-impl Reason for StructureReason {
-    fn remedy(&self) -> Cow<'_, str> {
-        let forms = FAMILIES.map(|(key, _, orders)| format!("{key}:{}", orders.join(",")));
-        Cow::Owned(format!(
-            "write one of {}, such as bj:1,2,1,2,1, with ranges such as bj:1-2,1,1,1-3,1 to try \
-             several",
-            forms.join(" ")
-        ))
-    }
-}
-
 /// The structures that `text` asks for: `bj:1,2,1,2,1`, or with ranges `bj:1-2,1-2,1,1-3,1`.
 ///
 /// # Errors
-/// [`StructureReason`]: a family that is not known, the wrong number of orders, orders beyond 20, B
+/// A family that is not known, the wrong number of orders, orders beyond 20, B
 /// without a coefficient.
 pub fn structures(text: &str) -> Result<Vec<Structure>> {
-    let wrong = |fault: StructureFault| {
-        let text = text.to_string();
-        Error::Usage(Box::new(StructureReason { text, fault }))
+    let wrong = |fault: String| {
+        let forms = FAMILIES.map(|(key, _, orders)| format!("{key}:{}", orders.join(",")));
+        let remedy = format!(
+            "write one of {}, such as bj:1,2,1,2,1, with ranges such as bj:1-2,1,1,1-3,1 to try \
+             several",
+            forms.join(" ")
+        );
+        Error::usage(format!("'{text}': {fault}"), remedy)
     };
     let (key, orders) = text
         .split_once(':')
-        .ok_or_else(|| wrong(StructureFault::NoColon))?;
+        .ok_or_else(|| wrong("no colon between family and orders".into()))?;
     let (key, family, names) = FAMILIES
         .into_iter()
         .find(|(known, ..)| *known == key)
-        .ok_or_else(|| wrong(StructureFault::UnknownFamily { key: key.into() }))?;
+        .ok_or_else(|| wrong(format!("'{key}' is no family of models")))?;
     let fields: Vec<&str> = orders.split(',').collect();
     if fields.len() != names.len() {
-        let found = fields.len();
-        return Err(wrong(StructureFault::Orders { found, key, names }));
+        return Err(wrong(format!(
+            "{} orders, and {key} has {}: {}",
+            fields.len(),
+            names.len(),
+            names.join(", ")
+        )));
     }
     let mut grid: Vec<Vec<usize>> = vec![Vec::new()];
     for (field, &name) in fields.iter().zip(names) {
         let range = order_range(field)
             .filter(|range| range.clone().count() * grid.len() <= MOST_STRUCTURES);
-        let field = field.to_string();
-        let range = range.ok_or_else(|| wrong(StructureFault::Order { field, name }))?;
+        let range = range.ok_or_else(|| {
+            wrong(format!(
+                "'{field}' is no order {name} from 0 to {MOST}, or makes more than \
+                 {MOST_STRUCTURES} structures"
+            ))
+        })?;
         if name == "nb" && *range.start() == 0 {
-            return Err(wrong(StructureFault::NoInput));
+            return Err(wrong("B needs a coefficient: nb is 1 or more".into()));
         }
         grid = grid
             .iter()

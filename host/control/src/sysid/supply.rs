@@ -2,10 +2,9 @@
 
 use super::blocks::BlockMean;
 use super::dynamics::IntervalEstimate;
-use crate::error::Reason;
+use crate::error::Problem;
 use crate::fitting::quantile_975;
 use serde::Serialize;
-use std::borrow::Cow;
 
 /// Share of the largest command below which a block does not count: there the dead zone speaks.
 const LEAST_COMMAND: f64 = 0.5;
@@ -27,35 +26,6 @@ pub struct SupplyLine {
     pub rms: f64,
 }
 
-/// Why there is no line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum NoLine {
-    /// Too few blocks under a large command with the supply logged.
-    #[error(
-        "{found} blocks with a supply and at least half the largest command where {LEAST} are the \
-         least"
-    )]
-    TooFew {
-        /// Such blocks.
-        found: usize,
-    },
-    /// The supply hardly changed.
-    #[error("the supply does not change")]
-    Constant,
-}
-
-impl Reason for NoLine {
-    fn remedy(&self) -> Cow<'_, str> {
-        Cow::Borrowed(match self {
-            NoLine::TooFew { .. } => {
-                "a block counts where the input hardly changes over it and the one before: hold \
-                 large commands for a second each, or average over less: --block 0.1"
-            }
-            NoLine::Constant => "record at several supply voltages",
-        })
-    }
-}
-
 /// Blocks that count, as (supply, speed / command - 1).
 pub fn errors(blocks: &[BlockMean]) -> Vec<(f64, f64)> {
     let largest = blocks.iter().map(|b| b.input.abs()).fold(0.0, f64::max);
@@ -75,18 +45,28 @@ impl SupplyLine {
     ///
     /// # Errors
     /// Too few blocks, or a supply that does not change.
-    pub fn fit(blocks: &[BlockMean]) -> Result<SupplyLine, NoLine> {
+    pub fn fit(blocks: &[BlockMean]) -> Result<SupplyLine, Problem> {
         let points = errors(blocks);
         if points.len() < LEAST {
-            let found = points.len();
-            return Err(NoLine::TooFew { found });
+            return Err(Problem::new(
+                format!(
+                    "{} blocks with a supply and at least half the largest command where {LEAST} \
+                     are the least",
+                    points.len()
+                ),
+                "a block counts where the input hardly changes over it and the one before: hold \
+                 large commands for a second each, or average over less: --block 0.1",
+            ));
         }
         let count = points.len() as f64;
         let mean_v = points.iter().map(|p| p.0).sum::<f64>() / count;
         let mean = points.iter().map(|p| p.1).sum::<f64>() / count;
         let square: f64 = points.iter().map(|p| (p.0 - mean_v).powi(2)).sum();
         if square <= count * 1e-6 {
-            return Err(NoLine::Constant);
+            return Err(Problem::new(
+                "the supply does not change",
+                "record at several supply voltages",
+            ));
         }
         let product: f64 = points.iter().map(|p| (p.0 - mean_v) * (p.1 - mean)).sum();
         let slope = product / square;
@@ -191,10 +171,11 @@ mod tests {
     fn a_constant_supply_is_refused() {
         let mut blocks = measured(0.1, 9.8, 1);
         blocks.iter_mut().for_each(|block| block.supply_v = 9.8);
-        assert_eq!(SupplyLine::fit(&blocks), Err(NoLine::Constant));
+        let refused = |blocks: &[BlockMean]| SupplyLine::fit(blocks).unwrap_err().to_string();
+        assert_eq!(refused(&blocks), "the supply does not change");
         assert_eq!(
-            SupplyLine::fit(&blocks[..3]),
-            Err(NoLine::TooFew { found: 3 })
+            refused(&blocks[..3]),
+            "3 blocks with a supply and at least half the largest command where 8 are the least"
         );
     }
 }

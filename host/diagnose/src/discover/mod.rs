@@ -20,7 +20,7 @@ use crate::diagnose::words::{HELD_OUT, LOGS, MODEL};
 use crate::diagnose::{DiagnoseOptions, LogDiagnosis, diagnose, diagnose_logs, with_names};
 use crate::effects::expression::{DefinitionFault, LawDefinition, effect};
 use crate::effects::{EFFECTS, Effect};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fitting::{Horizon, Progress};
 use crate::log::LogSet;
 use crate::model::Model;
@@ -170,12 +170,12 @@ fn rename(term: &mut LawDefinition, laws: &[Effect]) {
 /// More laws than one run of the program keeps.
 fn defined(terms: &[LawDefinition]) -> Result<Vec<Effect>> {
     let of = |fault| match fault {
-        DefinitionFault::Name(reason) | DefinitionFault::Parameter(_, reason) => reason,
-        DefinitionFault::Expression(misplaced) => misplaced.reason,
+        DefinitionFault::Name(problem) | DefinitionFault::Parameter(_, problem) => problem,
+        DefinitionFault::Expression(misplaced) => misplaced.problem,
     };
     let defined = terms
         .iter()
-        .map(|term| effect(term).map_err(|fault| Error::Usage(Box::new(of(fault)))));
+        .map(|term| effect(term).map_err(|fault| of(fault).usage()));
     defined.collect()
 }
 

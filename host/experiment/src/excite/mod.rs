@@ -12,7 +12,7 @@ mod path;
 mod table;
 
 pub use goals::{Excitation, ExcitedMotion, JointExtent};
-pub use limits::{ExciteError, JointLimits};
+pub use limits::JointLimits;
 pub use table::excite;
 
 use serde::Serialize;

@@ -1,10 +1,11 @@
 //! The motions of a plan one after the other.
 
 use super::goals::{Excitation, ExcitedMotion};
-use super::limits::{ExciteError, JointLimits};
+use super::limits::{JointLimits, no_servo};
 use super::multisine::multisine;
 use super::path::{PosePath, samples_between};
 use super::{ExcitationKind, ExcitePlan};
+use crate::error::{Error, Result};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -24,7 +25,7 @@ const FALL_S: f64 = 2.0;
 ///
 /// # Errors
 /// Limits that cannot be held, and too little time.
-pub fn excite(plan: &ExcitePlan) -> Result<Excitation, ExciteError> {
+pub fn excite(plan: &ExcitePlan) -> Result<Excitation> {
     check(plan)?;
     let middle: Vec<f64> = plan.joints.iter().map(JointLimits::middle_rad).collect();
     let samples = |seconds: f64| (seconds * plan.hz).round() as usize;
@@ -65,43 +66,52 @@ pub fn excite(plan: &ExcitePlan) -> Result<Excitation, ExciteError> {
     })
 }
 
-fn check(plan: &ExcitePlan) -> Result<(), ExciteError> {
+fn check(plan: &ExcitePlan) -> Result<()> {
     if plan.joints.is_empty() {
-        return Err(ExciteError::NoServo);
+        return Err(no_servo());
     }
     plan.joints.iter().try_for_each(JointLimits::check)?;
     let mut seen = Vec::new();
     for &servo in plan.joints.iter().flat_map(|joint| &joint.servos) {
         if seen.contains(&servo) {
-            return Err(ExciteError::ServoTwice(servo));
+            return Err(Error::usage(
+                format!("servo {servo} is named twice"),
+                "name each servo once",
+            ));
         }
         seen.push(servo);
     }
     let sorted = plan.kinds.windows(2).all(|pair| pair[0] < pair[1]);
     if plan.kinds.is_empty() || !sorted {
-        return Err(ExciteError::Kinds);
+        return Err(Error::usage(
+            "no kind of motion, or one twice",
+            "name each once: multisine,steps,triangles,holds,drop",
+        ));
     }
     if !(10.0..=1000.0).contains(&plan.hz) {
-        return Err(ExciteError::Rate(plan.hz));
+        return Err(Error::usage(
+            format!("{} samples per second", plan.hz),
+            "give 10 to 1000 samples per second",
+        ));
     }
     let (low_hz, high_hz) = plan.band_hz;
     if !(low_hz > 0.0 && low_hz < high_hz && 10.0 * high_hz <= plan.hz) {
-        let hz = plan.hz;
-        return Err(ExciteError::Band {
-            low_hz,
-            high_hz,
-            hz,
-        });
+        return Err(Error::usage(
+            format!(
+                "frequencies {low_hz} to {high_hz} Hz at {} samples per second",
+                plan.hz
+            ),
+            "give a lower and a higher frequency, ten samples to a period at least",
+        ));
     }
     for &kind in &plan.kinds {
         let (given_s, needed_s) = (plan.each_s, needed_s(plan, kind));
         if !(given_s >= needed_s && given_s.is_finite()) {
-            let kind = kind.name();
-            return Err(ExciteError::Short {
-                kind,
-                given_s,
-                needed_s,
-            });
+            let needed_s = (10.0 * needed_s).ceil() / 10.0;
+            return Err(Error::usage(
+                format!("{} within {given_s} s", kind.name()),
+                format!("give {needed_s} s at least for each kind, a higher speed or less range"),
+            ));
         }
     }
     Ok(())

@@ -108,6 +108,6 @@ fn limits_that_cannot_be_held_are_refused() {
         change(&mut plan);
         let error = excite(&plan).unwrap_err();
         assert!(error.to_string().contains(said), "{said}: {error}");
-        assert_eq!(crate::error::Error::from(error).exit_code(), 2);
+        assert_eq!(error.exit_code(), 2);
     }
 }

@@ -1,6 +1,6 @@
 //! The findings of a check.
 
-use crate::error::{Error, Place, Reason, Result};
+use crate::error::{Error, Place, Problem, Result};
 use crate::output::readable;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -114,16 +114,16 @@ impl Findings {
     }
 
     /// Something that makes the log useless.
-    pub fn refuse(&mut self, kind: &'static str, place: Place, reason: &dyn Reason) {
-        let words = (reason.to_string(), &*reason.remedy());
+    pub fn refuse(&mut self, kind: &'static str, place: Place, problem: &Problem) {
+        let words = (problem.what.clone(), &*problem.remedy);
         self.add(kind, Severity::Refuse, Some(place), words);
     }
 
     /// What cannot be read becomes a finding; the system's refusals stay errors.
     pub fn broken(&mut self, kind: &'static str, error: Error) -> Result<()> {
         match error {
-            Error::Data { place, reason } => {
-                self.refuse(kind, place, &*reason);
+            Error::Data { place, problem } => {
+                self.refuse(kind, place, &problem);
                 Ok(())
             }
             other => Err(other),

@@ -6,9 +6,8 @@ use super::extremes::Extremes;
 use super::finding::Findings;
 use super::held::HeldReadings;
 use super::outlier::Outliers;
-use crate::LogReason;
 use crate::cut::{CutMotion, is_energised};
-use crate::error::Place;
+use crate::error::{Place, Problem};
 use crate::model::{ColumnMean, Drive, JointColumns, MeasuredSignal};
 use crate::output::number::percent;
 use std::f64::consts::{PI, TAU};
@@ -196,9 +195,11 @@ impl JointCheck {
         let named = (column.as_str(), file.cut.fields.position[self.joint]);
         let turns = self.signal == MeasuredSignal::Angle;
         for line in self.wraps.iter().filter(|_| turns) {
-            let column = column.clone();
-            let reason = LogReason::AngleWraps { column };
-            findings.refuse("wrap", file.at(*line, named.1), &reason);
+            let problem = Problem::new(
+                format!("{column} jumps by a whole turn"),
+                "the angle wraps round: log it unwrapped, or add the turns",
+            );
+            findings.refuse("wrap", file.at(*line, named.1), &problem);
         }
         self.judge_missing(place, findings);
         self.judge_stuck(named.1, file, findings);

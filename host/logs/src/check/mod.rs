@@ -25,7 +25,7 @@ use super::bam::BamBench;
 use super::cut::{Cut, cut};
 use super::expanded;
 use super::request::LogRequest;
-use crate::error::{Place, Result, words};
+use crate::error::{Place, Problem, Result};
 use crate::model::Model;
 use excitation::ExcitationCheck;
 use finding::Findings;
@@ -48,12 +48,12 @@ pub fn check(requests: &[LogRequest], model: &Model) -> Result<Vec<LogFinding>> 
     let requests = &expanded(requests)?;
     for request in requests {
         let mut cells = WrongCells::default();
-        let (cut, facts) = cut(request, &model.log, &mut bench, &mut |kind, error| {
-            let left = match kind {
-                "cell" => cells.take(error),
-                _ => Err(error),
-            };
-            left.or_else(|error| findings.broken(kind, error))
+        let (cut, facts) = cut(request, &model.log, &mut bench, &mut |kind, fault| {
+            match fault.cell {
+                Some(cell) => cells.take(fault.place, fault.problem, cell),
+                None => findings.refuse(kind, fault.place, &fault.problem),
+            }
+            Ok(())
         });
         let lacks_column = cells.close(cut.rows, &mut findings);
         match facts {
@@ -110,20 +110,20 @@ fn judge(
     }
     if cut.is_empty() {
         match cut.lack(&model.log, &request.name()) {
-            Some(reason) => findings.refuse("missing", file.place(), &reason),
+            Some(problem) => findings.refuse("missing", file.place(), &problem),
             // That says all.
             None if lacks_column => {}
             None => {
                 let remedy = "see the rows refused, or record again";
-                let reason = words("no sample could be read", remedy);
-                findings.refuse("none", file.place(), &reason);
+                let problem = Problem::new("no sample could be read", remedy);
+                findings.refuse("none", file.place(), &problem);
             }
         }
         return;
     }
     // Refuses a file of which nothing is long enough; else only warns of what is not.
     match cut.short.refusal(path).filter(|_| cut.motions.is_empty()) {
-        Some((place, reason)) => findings.refuse("short", place, &reason),
+        Some((place, problem)) => findings.refuse("short", place, &problem),
         None => findings.extend(cut.short.warning(path)),
     }
     sampling::judge(file, model.log.time.unit, findings);

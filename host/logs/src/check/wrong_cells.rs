@@ -2,8 +2,8 @@
 //! finding, and so are rows of another number of fields.
 
 use super::finding::Findings;
-use crate::LogReason;
-use crate::error::{Error, Place, Result};
+use crate::error::{Place, Problem};
+use crate::fault::{CellFault, WrongCell};
 use std::collections::BTreeMap;
 
 /// Lines that are named beside the first.
@@ -11,21 +11,13 @@ const NAMED: usize = 8;
 /// A column is wrong as a whole where so many of ten rows are wrong in it alike.
 const OF_TEN: usize = 9;
 
-/// What is wrong with a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Fault {
-    Stamp,
-    Nothing,
-    Beyond,
-    Fields,
-    Not(&'static str),
-}
-
 /// Cells of one column that are wrong in one way.
 #[derive(Debug, Default)]
 struct Alike {
     cells: usize,
-    first: Option<(Place, LogReason)>,
+    first: Option<(Place, Problem)>,
+    /// The remedy where they are the whole column, if it is another one then.
+    of_column: Option<&'static str>,
     /// Lines of those after the first, some of them.
     lines: Vec<usize>,
 }
@@ -33,25 +25,22 @@ struct Alike {
 /// Running account of the rows of a file.
 #[derive(Debug, Default)]
 pub(super) struct WrongCells {
-    alike: BTreeMap<(String, Fault), Alike>,
+    alike: BTreeMap<(String, CellFault), Alike>,
 }
 
 impl WrongCells {
-    /// Takes the error of a row; gives it back if it is about no single cell.
-    pub fn take(&mut self, error: Error) -> Result<()> {
-        let reason = error.reason::<LogReason>().cloned();
-        let key = reason.as_ref().and_then(key);
-        let (Error::Data { place, .. }, Some(reason), Some(key)) = (&error, reason, key) else {
-            return Err(error);
-        };
-        let alike = self.alike.entry(key).or_default();
+    /// Takes a cell that is wrong.
+    pub fn take(&mut self, place: Place, problem: Problem, cell: WrongCell) {
+        let alike = self.alike.entry((cell.column, cell.fault)).or_default();
         alike.cells += 1;
-        match (&alike.first, place.line) {
-            (None, _) => alike.first = Some((place.clone(), reason)),
-            (Some(_), Some(line)) if alike.lines.len() < NAMED => alike.lines.push(line),
+        match place.line {
+            _ if alike.first.is_none() => {
+                alike.first = Some((place, problem));
+                alike.of_column = cell.of_column;
+            }
+            Some(line) if alike.lines.len() < NAMED => alike.lines.push(line),
             _ => {}
         }
-        Ok(())
     }
 
     /// Ends a file of so many rows: whether a column as a whole is refused.
@@ -60,49 +49,37 @@ impl WrongCells {
         let (whole, single): (Vec<Alike>, Vec<Alike>) =
             self.alike.into_values().partition(is_whole);
         let any = !whole.is_empty();
-        for Alike { cells, first, .. } in whole {
-            if let Some((place, cell)) = first {
-                let (cell, more) = (Box::new(cell), cells - 1);
-                findings.refuse("column", place, &LogReason::WrongColumn { cell, more });
+        for alike in whole {
+            if let Some((place, mut problem)) = alike.first {
+                let more = alike.cells - 1;
+                let lines = if more == 1 { "line" } else { "lines" };
+                problem.what += &format!("; and {more} more {lines} like it");
+                if let Some(remedy) = alike.of_column {
+                    problem.remedy = remedy.to_string();
+                }
+                findings.refuse("column", place, &problem);
             }
         }
         let mut single: Vec<_> = single
             .into_iter()
-            .filter_map(
-                |Alike {
-                     cells,
-                     first,
-                     lines,
-                 }| Some((first?, cells, lines)),
-            )
+            .filter_map(|alike| Some((alike.first?, alike.cells, alike.lines)))
             .collect();
         single.sort_by_key(|((place, _), ..)| place.line);
-        for ((place, cell), cells, lines) in single {
-            let reason = match cells {
-                1 => cell,
-                cells => LogReason::WrongCells {
-                    cell: Box::new(cell),
-                    more: cells - 1,
-                    lines,
-                },
-            };
-            findings.refuse("cell", place, &reason);
+        for ((place, mut problem), cells, lines) in single {
+            if cells > 1 {
+                let (more, lines) = (cells - 1, of_lines(&lines, cells - 1));
+                problem.what += &format!("; and {more} more like it, in {lines}");
+            }
+            findings.refuse("cell", place, &problem);
         }
         any
     }
 }
 
-/// The column, and what is wrong with the cell.
-fn key(reason: &LogReason) -> Option<(String, Fault)> {
-    let (column, fault) = match reason {
-        LogReason::TimeStamp { column, .. } => (column, Fault::Stamp),
-        LogReason::NoReading { column, .. } => (column, Fault::Beyond),
-        LogReason::WrongField { column, found, .. } if found.is_empty() => (column, Fault::Nothing),
-        LogReason::WrongField {
-            column, expected, ..
-        } => (column, Fault::Not(expected)),
-        LogReason::FieldCount { .. } => return Some((String::new(), Fault::Fields)),
-        _ => return None,
-    };
-    Some((column.clone(), fault))
+/// "lines 5, 9, .."
+fn of_lines(lines: &[usize], more: usize) -> String {
+    let named: Vec<String> = lines.iter().map(usize::to_string).collect();
+    let rest = if more > lines.len() { ", .." } else { "" };
+    let word = if more == 1 { "line" } else { "lines" };
+    format!("{word} {}{rest}", named.join(", "))
 }

@@ -10,10 +10,11 @@ use super::name::{NameGuess, Role, is_joint_state, name_guess};
 use super::segment::stepping_segment;
 use super::unused::{say_file, say_unused};
 use super::values::{angle_unit, duty_unit, median, range, speed_fit, stays_by};
-use crate::error::{Error, Place, Result};
+use crate::RawLog;
+use crate::error::{Place, Result};
 use crate::model::Unit;
 use crate::output::shortened;
-use crate::{LogReason, RawLog};
+use crate::read::no_sample;
 
 /// Roles of a joint's columns.
 const OF_JOINTS: [Role; 7] = [
@@ -47,7 +48,7 @@ pub fn log_guess(
 ) -> Result<LogGuess> {
     let mut names: Vec<NameGuess> = log.names.iter().map(|name| name_guess(name)).collect();
     if !names.is_empty() && log.columns.iter().all(Vec::is_empty) {
-        return Err(Error::refused(Place::file(file), LogReason::NoSample));
+        return Err(no_sample().at(Place::file(file)));
     }
     let is_lerobot = is_lerobot(log.names.iter().map(String::as_str));
     if is_lerobot {

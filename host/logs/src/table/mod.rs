@@ -32,12 +32,13 @@ pub(super) use text::TextCells;
 use super::bam::{self, BenchFigures};
 use super::cell::{is_missing, number};
 use super::csv;
+use super::fault::RowFault;
 use super::foreign::{HEAD, foreign};
 use super::format::LogFormat;
-use super::reason::LogReason;
 use crate::error::{Error, Place, Result};
 use crate::model::LogColumns;
 use crate::output::number::hex;
+use crate::output::shortened;
 use bytes::Bytes;
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
@@ -176,9 +177,12 @@ impl LogTable {
         let mut found = (0..self.names.len()).filter(|&i| self.names[i] == name);
         match (found.next(), found.next()) {
             (Some(_), Some(second)) => {
-                let column = name.to_string();
                 let place = Place::at(path, self.names_line(), second + 1);
-                Err(Error::refused(place, LogReason::ColumnTwice { column }))
+                Err(Error::data(
+                    place,
+                    format!("column '{name}' stands there twice"),
+                    "rename one of them, so that it is clear which is meant",
+                ))
             }
             (Some(index), None) => Ok(LogCell::Field(index)),
             (None, _) => match self.constants.iter().find(|(key, ..)| key == name) {
@@ -190,10 +194,12 @@ impl LogTable {
 
     fn missing(&self, path: &Path, name: &str) -> Error {
         let place = Place::at(path, self.names_line(), 1);
-        let column = name.to_string();
         if let Some((_, holds)) = self.left_out.iter().find(|(left_out, _)| left_out == name) {
-            let holds = holds.clone();
-            return Error::refused(place, LogReason::ColumnLeftOut { column, holds });
+            return Error::data(
+                place,
+                format!("column '{name}' holds {holds}"),
+                "name a column of numbers, or save this one as numbers",
+            );
         }
         let plain = |name: &str| -> String {
             let letters = name.chars().filter(|letter| letter.is_alphanumeric());
@@ -207,12 +213,19 @@ impl LogTable {
             .chain(constants)
             .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
             .filter(|known| likeness(known) > 0.8);
-        let reason = LogReason::NoColumn {
-            column,
-            nearest: nearest.cloned(),
-            found: self.names.clone(),
-        };
-        Error::refused(place, reason)
+        let meant = nearest.map_or(".".to_string(), |nearest| {
+            format!("; did you mean '{}'?", shortened(nearest))
+        });
+        let remedy = format!(
+            "name the column under [log] in the model, or, if it never changes, write \
+             '# {name} = VALUE' above the header"
+        );
+        let has = listed(&self.names);
+        Error::data(
+            place,
+            format!("no column '{name}'{meant} The log has: {has}"),
+            remedy,
+        )
     }
 
     fn names_line(&self) -> usize {
@@ -228,7 +241,7 @@ impl LogTable {
     }
 
     /// What is wrong with a row as a whole, and the field that shows it, counted from 1.
-    pub fn fault(&self, row: usize) -> Option<&(usize, LogReason)> {
+    pub fn fault(&self, row: usize) -> Option<(usize, RowFault)> {
         self.text.as_ref()?.fault_of(row)
     }
 
@@ -260,6 +273,20 @@ impl LogTable {
             None => self.columns[column][row].is_nan(),
         }
     }
+}
+
+/// Up to 40 names.
+fn listed(names: &[String]) -> String {
+    let shown: Vec<Cow<str>> = names
+        .iter()
+        .take(40)
+        .map(|name| match name.as_str() {
+            "" => "(unnamed)".into(),
+            name => shortened(name),
+        })
+        .collect();
+    let more = if names.len() > 40 { ", ..." } else { "" };
+    format!("{}{more}", shown.join(", "))
 }
 
 /// The file, for errors.

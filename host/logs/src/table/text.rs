@@ -1,6 +1,6 @@
 //! What a table of text knows beyond its numbers: lines, faults, and cells as they are written.
 
-use crate::reason::LogReason;
+use crate::fault::RowFault;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub(crate) struct TextCells {
     /// The first cell of each column that is neither a number nor a gap.
     pub words: Vec<Option<String>>,
     /// What is wrong with a row as a whole, and the field that shows it, counted from 1.
-    faults: BTreeMap<usize, (usize, LogReason)>,
+    faults: BTreeMap<usize, (usize, RowFault)>,
     /// Of each column the cells, by row, whose number does not tell how they are written.
     written: Vec<Vec<(usize, Arc<str>)>>,
     known: HashSet<Arc<str>>,
@@ -40,8 +40,8 @@ impl TextCells {
     }
 
     /// Says what is wrong with the row that begins next.
-    pub fn fault(&mut self, field: usize, reason: LogReason) {
-        self.faults.insert(self.lines.len(), (field, reason));
+    pub fn fault(&mut self, field: usize, fault: RowFault) {
+        self.faults.insert(self.lines.len(), (field, fault));
     }
 
     /// Begins a row on this line; its number, counted from 0.
@@ -74,7 +74,7 @@ impl TextCells {
     }
 
     /// What is wrong with a row as a whole, and the field that shows it, counted from 1.
-    pub fn fault_of(&self, row: usize) -> Option<&(usize, LogReason)> {
-        self.faults.get(&row)
+    pub fn fault_of(&self, row: usize) -> Option<(usize, RowFault)> {
+        self.faults.get(&row).copied()
     }
 }

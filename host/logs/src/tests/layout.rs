@@ -13,10 +13,10 @@ fn said(text: &str) -> (Option<usize>, String) {
         RawLog::read_request(&request).unwrap_err(),
     ];
     let told = errors.map(|error| {
-        let Error::Data { place, reason } = &error else {
+        let Error::Data { place, problem } = &error else {
             panic!("{error}");
         };
-        (place.line, format!("{reason}: {}", reason.remedy()))
+        (place.line, format!("{problem}: {}", problem.remedy))
     });
     assert_eq!(told[0].0, told[1].0, "{told:?}");
     let ([with, _], [_, without]) = (told.clone(), told);

@@ -39,9 +39,9 @@ fn rows(header: &str, separator: char) -> String {
 
 fn refused(text: &str, columns: &LogColumns) -> (Option<usize>, Option<usize>, String) {
     match read_text(text, columns).unwrap_err() {
-        Error::Data { place, reason } => {
-            assert!(!reason.remedy().is_empty());
-            (place.line, place.column, reason.to_string())
+        Error::Data { place, problem } => {
+            assert!(!problem.remedy.is_empty());
+            (place.line, place.column, problem.what)
         }
         other => panic!("{other}"),
     }

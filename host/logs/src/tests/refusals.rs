@@ -202,13 +202,16 @@ fn each_refusal_names_its_place() {
 }
 
 #[test]
-fn a_reason_can_be_matched_on() {
+fn time_that_goes_back_is_refused_with_its_remedy() {
     let late = rows("t_s,q,u", ',').replace("0.06", "0.01");
     let log = file(late.as_bytes(), ".csv");
     let error = read(&[LogRequest::whole(log.path())], &columns()).unwrap_err();
-    let (time_s, previous_s) = (0.01, 0.05);
-    let reason = LogReason::TimeNotIncreasing { time_s, previous_s };
-    assert_eq!(error.reason(), Some(&reason));
+    let said = ":8:1: time does not increase: 0.01 s after 0.05 s";
+    assert!(error.to_string().ends_with(said), "{error}");
+    assert_eq!(
+        error.remedy().unwrap(),
+        "cut the log there, mark the recordings in a segment column, or name a range of rows"
+    );
 }
 
 #[test]

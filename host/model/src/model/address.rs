@@ -3,10 +3,10 @@
 
 use super::field::{JointField, LinkField};
 use super::path::ParameterPath;
-use super::path_reason::PathReason;
+use super::suggest::suggest;
 use super::{Model, Robot};
 use crate::effects::{self, Axis, EffectInfo};
-use crate::error::Error;
+use crate::error::{Error, Problem};
 use std::str::FromStr;
 
 impl FromStr for ParameterPath {
@@ -15,9 +15,9 @@ impl FromStr for ParameterPath {
     /// Reads a path as [`Display`](std::fmt::Display) writes it.
     ///
     /// # Errors
-    /// [`Error::Usage`] with a [`PathReason`].
+    /// [`Error::Usage`]: what of it is unknown, or no joint.
     fn from_str(text: &str) -> Result<Self, Error> {
-        read(text).map_err(|reason| Error::Usage(Box::new(reason)))
+        read(text).map_err(Problem::usage)
     }
 }
 
@@ -27,25 +27,23 @@ impl ParameterPath {
     /// `coulomb@2` number.
     ///
     /// # Errors
-    /// [`Error::Usage`] with a [`PathReason`].
+    /// [`Error::Usage`]: what of it is unknown, or no joint.
     pub fn read(text: &str, model: &Model) -> Result<Self, Error> {
-        read_in(text, model.robot.as_ref()).map_err(|reason| Error::Usage(Box::new(reason)))
+        read_in(text, model.robot.as_ref()).map_err(Problem::usage)
     }
 }
 
 /// An address, by numbers or by the names of a robot in space.
-pub(super) fn read_in(text: &str, robot: Option<&Robot>) -> Result<ParameterPath, PathReason> {
+pub(super) fn read_in(text: &str, robot: Option<&Robot>) -> Result<ParameterPath, Problem> {
     // A name may have dots, a key has none.
     let (Some(robot), Some((owner, key))) = (robot, text.rsplit_once('.')) else {
         return read(text);
     };
-    let at = |what: &'static str, name: &str, names: &[String]| {
+    let at = |what: &str, name: &str, names: &[String]| {
         let found = names.iter().position(|own| own == name);
-        let unknown = || PathReason::NotOfRobot {
-            text: text.into(),
-            what,
-            name: name.into(),
-            known: names.to_vec(),
+        let unknown = || {
+            let found = format!("`{text}`: the robot has no {what} `{name}`");
+            Problem::new(found, suggest(name, names))
         };
         found.map(|index| index + 1).ok_or_else(unknown)
     };
@@ -64,10 +62,13 @@ pub(super) fn read_in(text: &str, robot: Option<&Robot>) -> Result<ParameterPath
     read(&numbered)
 }
 
-pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
-    let (owner, key) = text
-        .split_once('.')
-        .ok_or_else(|| PathReason::NoParameter { text: text.into() })?;
+pub(super) fn read(text: &str) -> Result<ParameterPath, Problem> {
+    let (owner, key) = text.split_once('.').ok_or_else(|| {
+        Problem::new(
+            format!("`{text}` names no parameter"),
+            "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`",
+        )
+    })?;
     if let Some(index) = owner.strip_prefix("link").and_then(counted) {
         let field = choose(text, key, LinkField::ALL.map(|f| (f.key(), f)))?;
         return Ok(ParameterPath::Link { index, field });
@@ -83,7 +84,7 @@ pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
     let defined = effects::expression::defined();
     let all = effects::EFFECTS.iter().chain(&defined).copied();
     let effect = choose(text, id, all.map(|effect| (effect.info().id, effect)))?;
-    let joint = joint_of(text, effect.info(), joint)?;
+    let joint = joint_of([text, key], effect.info(), joint)?;
     let axes = [Axis::Hinge, Axis::Slide].into_iter();
     let keys = axes.filter_map(|axis| effect.on(axis)).flat_map(|effect| {
         let parameters = effect.info().parameters.iter().enumerate();
@@ -101,22 +102,27 @@ pub(super) fn read(text: &str) -> Result<ParameterPath, PathReason> {
 
 /// The joint named behind the `@`, as the effect's scope allows.
 fn joint_of(
-    text: &str,
+    [text, key]: [&str; 2],
     info: &EffectInfo,
     joint: Option<&str>,
-) -> Result<Option<usize>, PathReason> {
-    let (text, id) = (text.to_string(), info.id);
+) -> Result<Option<usize>, Problem> {
+    let id = info.id;
     match (joint, info.scope == effects::Scope::WholeRig) {
-        (None, true) => Ok(None),
-        (None, false) => Err(PathReason::MissingJoint { text, id }),
-        (Some(_), true) => Err(PathReason::WholeRig { text, id }),
-        (Some("all"), false) => Ok(None),
+        (None, true) | (Some("all"), false) => Ok(None),
+        (None, false) => Err(Problem::new(
+            format!("`{text}` does not say at which joint"),
+            format!("write `{id}@1.{key}` for the first joint"),
+        )),
+        (Some(_), true) => Err(Problem::new(
+            format!("`{text}`: `{id}` acts on the whole rig, not on one joint"),
+            format!("write `{id}.{key}`"),
+        )),
         (Some(joint), false) => match counted(joint) {
             Some(index) => Ok(Some(index)),
-            None => Err(PathReason::NoJoint {
-                text,
-                joint: joint.into(),
-            }),
+            None => Err(Problem::new(
+                format!("`{text}`: `{joint}` is no joint"),
+                "joints count from 1; `all` are the driven ones",
+            )),
         },
     }
 }
@@ -132,7 +138,7 @@ fn choose<T>(
     text: &str,
     name: &str,
     known: impl IntoIterator<Item = (&'static str, T)>,
-) -> Result<T, PathReason> {
+) -> Result<T, Problem> {
     let mut names = Vec::new();
     for (known, value) in known {
         if known == name {
@@ -140,9 +146,6 @@ fn choose<T>(
         }
         names.push(known);
     }
-    Err(PathReason::UnknownName {
-        text: text.into(),
-        name: name.into(),
-        known: names,
-    })
+    let found = format!("`{text}`: unknown name `{name}`");
+    Err(Problem::new(found, suggest(name, &names)))
 }

@@ -175,10 +175,7 @@ fn checked(document: DocumentMut, path: &Path) -> Result<String> {
     match Model::parse(&text, path) {
         Ok(_) => Ok(text),
         // Its line is one of a text that will not be written.
-        Err(Error::Data { reason, .. }) => Err(Error::Data {
-            place: Place::file(path),
-            reason,
-        }),
+        Err(Error::Data { problem, .. }) => Err(problem.at(Place::file(path))),
         Err(error) => Err(error),
     }
 }

@@ -12,8 +12,9 @@
 
 use super::limits::Limits;
 use super::source::TomlSource;
-use super::toml_reason::TomlReason;
-use crate::error::{Error, Reason, Result};
+use super::suggest::suggest;
+use crate::effects::split_unit;
+use crate::error::{Error, Place, Result};
 use std::ops::Range;
 use toml_edit::{Item, TableLike, Value};
 
@@ -42,12 +43,20 @@ impl<'a> Table<'a> {
         match self.items.iter().find(|(key, _)| !known.contains(key)) {
             None => Ok(()),
             Some((key, _)) => {
-                let reason = TomlReason::UnknownKey {
-                    key: key.into(),
-                    table: self.name.clone(),
-                    known: known.iter().map(ToString::to_string).collect(),
+                let (what, remedy) = match other_unit(key, known) {
+                    Some((known, unit, end)) => (
+                        match end {
+                            "" => format!("key `{key}` does not say its unit"),
+                            end => format!("key `{key}` ends in `{end}`, not in the unit wanted"),
+                        },
+                        format!("write `{known}`, in {unit}"),
+                    ),
+                    None => (
+                        format!("unknown key `{key}` in {}", self.name),
+                        suggest(key, known),
+                    ),
                 };
-                Err(self.bad_key(key, reason))
+                Err(self.bad_key(key, what, remedy))
             }
         }
     }
@@ -68,12 +77,13 @@ impl<'a> Table<'a> {
         let Some(item) = self.items.get(key) else {
             return Ok(None);
         };
-        let wrong = || TomlReason::WrongType {
-            key: key.into(),
-            found: item.type_name(),
-            expected: expected.into(),
-        };
-        read(item).map(Some).ok_or_else(|| self.bad(key, wrong()))
+        read(item).map(Some).ok_or_else(|| {
+            self.bad(
+                key,
+                format!("`{key}` is {}", with_article(item.type_name())),
+                format!("it must be {expected}"),
+            )
+        })
     }
 
     /// The value read from `key`, which must be there.
@@ -90,12 +100,12 @@ impl<'a> Table<'a> {
         match number.filter(|number| !limits.allow(*number)) {
             None => Ok(number),
             Some(value) => {
-                let reason = TomlReason::OutOfRange {
-                    key: key.into(),
-                    value,
-                    limits,
+                let what = if value.is_finite() {
+                    format!("`{key}` = {value} is impossible")
+                } else {
+                    format!("`{key}` is {value}, which no rig has")
                 };
-                Err(self.bad(key, reason))
+                Err(self.bad(key, what, format!("give a number {limits}")))
             }
         }
     }
@@ -108,13 +118,11 @@ impl<'a> Table<'a> {
     /// The whole number under `key`, if there is one.
     pub fn whole(&self, key: &str, limits: Limits) -> Result<Option<f64>> {
         match self.number(key, limits)? {
-            Some(value) if value.fract() != 0.0 => {
-                let reason = TomlReason::NotWhole {
-                    key: key.into(),
-                    value,
-                };
-                Err(self.bad(key, reason))
-            }
+            Some(value) if value.fract() != 0.0 => Err(self.bad(
+                key,
+                format!("`{key}` = {value} is not whole"),
+                "give a whole number",
+            )),
             number => Ok(number),
         }
     }
@@ -126,14 +134,11 @@ impl<'a> Table<'a> {
         };
         match usize::try_from(number) {
             Ok(index @ 1..) if index <= count => Ok(Some(index - 1)),
-            _ => {
-                let reason = TomlReason::NoSuchIndex {
-                    key: key.into(),
-                    number,
-                    count,
-                };
-                Err(self.bad(key, reason))
-            }
+            _ => Err(self.bad(
+                key,
+                format!("there is no {key} {number}"),
+                format!("{key}s count from 1 to {count} here"),
+            )),
         }
     }
 
@@ -145,7 +150,7 @@ impl<'a> Table<'a> {
     /// The text under `key`, if there is one; never empty.
     pub fn text(&self, key: &str) -> Result<Option<&'a str>> {
         match self.get(key, "text in quotes", Item::as_str)? {
-            Some("") => Err(self.bad(key, TomlReason::EmptyText { key: key.into() })),
+            Some("") => Err(self.bad(key, format!("`{key}` is empty"), "give it a name")),
             text => Ok(text),
         }
     }
@@ -163,12 +168,9 @@ impl<'a> Table<'a> {
         match choices.iter().find(|(name, _)| *name == text) {
             Some((_, value)) => Ok(Some(*value)),
             None => {
-                let reason = TomlReason::UnknownName {
-                    key: key.into(),
-                    found: text.into(),
-                    known: choices.iter().map(|(name, _)| name.to_string()).collect(),
-                };
-                Err(self.bad(key, reason))
+                let known: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+                let what = format!("`{key}` cannot be `{text}`");
+                Err(self.bad(key, what, suggest(text, &known)))
             }
         }
     }
@@ -190,8 +192,11 @@ impl<'a> Table<'a> {
                 .as_str()
                 .map(|text| (text, value.span()))
                 .ok_or_else(|| {
-                    let (key, found) = (key.into(), value.type_name());
-                    self.refused(value.span(), TomlReason::NoText { key, found })
+                    Error::data(
+                        self.place(value.span()),
+                        format!("`{key}` holds {}", with_article(value.type_name())),
+                        "put text in quotes there",
+                    )
                 })
         });
         texts.collect::<Result<_>>().map(Some)
@@ -282,41 +287,52 @@ impl<'a> Table<'a> {
     }
 
     /// Refuses the value under `key`.
-    pub fn bad(&self, key: &str, reason: impl Reason) -> Error {
-        let value = self.items.get(key).and_then(Item::span);
-        self.refused(value.or_else(|| self.key_span(key)), reason)
-    }
-
-    /// Refuses a character of the text under `key`, counted from 0.
-    pub fn bad_character(&self, key: &str, at: usize, reason: impl Reason) -> Error {
-        let value = self.items.get(key).and_then(Item::span);
-        self.refused(value.map(|value| self.source.character(value, at)), reason)
+    pub fn bad(&self, key: &str, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::data(self.place_of(key), what, remedy)
     }
 
     /// Refuses the key itself.
-    pub fn bad_key(&self, key: &str, reason: impl Reason) -> Error {
-        self.refused(self.key_span(key), reason)
+    pub fn bad_key(&self, key: &str, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::data(self.place_of_key(key), what, remedy)
     }
 
     /// Refuses the table as a whole.
-    pub fn bad_table(&self, reason: impl Reason) -> Error {
-        self.refused(self.span.clone(), reason)
-    }
-
-    /// Refuses what stands at `span`.
-    pub fn refused(&self, span: Option<Range<usize>>, reason: impl Reason) -> Error {
-        Error::refused(self.source.place(span), reason)
+    pub fn bad_table(&self, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::data(self.place(self.span.clone()), what, remedy)
     }
 
     /// `key` is missing.
     pub fn lacks(&self, key: &str) -> Error {
-        self.bad_table(TomlReason::MissingKey {
-            key: key.into(),
-            table: self.name.clone(),
-        })
+        let remedy = match split_unit(key) {
+            Some((_, unit)) => format!("add `{key} = ...`, in {unit}"),
+            None => format!("add `{key}`"),
+        };
+        self.bad_table(format!("{} lacks `{key}`", self.name), remedy)
     }
 
-    /// Where its key stands.
+    /// Where `span` begins.
+    pub fn place(&self, span: Option<Range<usize>>) -> Place {
+        self.source.place(span)
+    }
+
+    /// Where the value under `key` stands.
+    pub fn place_of(&self, key: &str) -> Place {
+        let value = self.items.get(key).and_then(Item::span);
+        self.place(value.or_else(|| self.key_span(key)))
+    }
+
+    /// Where a character of the text under `key` stands, counted from 0.
+    pub fn place_of_character(&self, key: &str, at: usize) -> Place {
+        let value = self.items.get(key).and_then(Item::span);
+        self.place(value.map(|value| self.source.character(value, at)))
+    }
+
+    /// Where the key stands.
+    pub fn place_of_key(&self, key: &str) -> Place {
+        self.place(self.key_span(key))
+    }
+
+    /// What its key spans.
     pub fn key_span(&self, key: &str) -> Option<Range<usize>> {
         let (key, _) = self.items.get_key_value(key)?;
         key.span().or_else(|| self.span.clone())
@@ -336,4 +352,18 @@ impl<'a> Table<'a> {
 fn number(value: &Value) -> Option<f64> {
     let whole = || value.as_integer().map(|integer| integer as f64);
     value.as_float().or_else(whole)
+}
+
+/// The known key that has this stem, its unit, and what `key` ends in instead.
+fn other_unit<'k>(key: &'k str, known: &[&'k str]) -> Option<(&'k str, &'static str, &'k str)> {
+    known.iter().find_map(|known| {
+        let (stem, unit) = split_unit(known)?;
+        let end = key.strip_prefix(stem)?;
+        (end.is_empty() || end.starts_with('_')).then_some((*known, unit, end))
+    })
+}
+
+fn with_article(kind: &str) -> String {
+    let vowel = kind.starts_with(['a', 'e', 'i', 'o', 'u']);
+    format!("{} {kind}", if vowel { "an" } else { "a" })
 }

@@ -4,7 +4,6 @@
 use super::import::{Locked, robot_in_space};
 use super::limits::Limits;
 use super::reader::Table;
-use super::reason::ModelReason;
 use super::{Link, Model};
 use crate::dynamics::{SpatialLink, SpatialTree};
 use crate::error::{Error, Result};
@@ -46,19 +45,22 @@ impl Robot {
         let path = model.parent().unwrap_or(Path::new("")).join(file);
         let text = given.map_or_else(|| std::fs::read_to_string(&path), |text| Ok(text.into()));
         let text = text.map_err(|source| {
-            let file = path.display().to_string();
             rig.bad(
                 "robot",
-                ModelReason::RobotUnread {
-                    file,
-                    source_text: source.to_string(),
-                },
+                format!("cannot read the robot's file {}: {source}", path.display()),
+                "name a URDF or MJCF file, relative to the model's",
             )
         })?;
         if let Some(noted) = rig.text("robot_sha256")? {
             let found = fingerprint(&text);
             if found != noted {
-                return Err(rig.bad("robot_sha256", ModelReason::RobotChanged { found }));
+                return Err(rig.bad(
+                    "robot_sha256",
+                    format!(
+                        "the robot's file is another than the one noted: its SHA-256 is {found}"
+                    ),
+                    "look what changed; if the model's values still hold, note the new one",
+                ));
             }
         }
         let mut locked = Vec::new();
@@ -68,13 +70,7 @@ impl Robot {
             }
         }
         let found = robot_in_space(&text, &path, &locked).map_err(|error| match error {
-            Error::Usage(reason) => rig.bad(
-                "robot",
-                ModelReason::RobotRefused {
-                    why: reason.to_string(),
-                    remedy: reason.remedy().into_owned(),
-                },
-            ),
+            Error::Usage(problem) => problem.at(rig.place_of("robot")),
             error => error,
         })?;
         Ok(Some(Robot {

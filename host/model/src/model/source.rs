@@ -1,6 +1,5 @@
 //! The text of a TOML file: finds the line and column of every part.
 
-use super::toml_reason::TomlReason;
 use crate::error::{Error, Place, Result};
 use std::ops::Range;
 use std::path::Path;
@@ -22,7 +21,11 @@ impl TomlSource<'_> {
     pub fn document(&self) -> Result<toml_edit::Document<&str>> {
         toml_edit::Document::parse(self.text).map_err(|error| {
             let message = error.message().trim().replace('\n', ", ");
-            Error::refused(self.place(error.span()), TomlReason::Syntax { message })
+            Error::data(
+                self.place(error.span()),
+                format!("not TOML: {message}"),
+                "write `key = value` lines under `[table]` headings; text needs quotes",
+            )
         })
     }
 

@@ -1,11 +1,11 @@
 //! Effects added to a model's text, their values fitted along with the free ones.
 
-use super::candidate::{Candidate, CandidateError};
+use super::candidate::Candidate;
 use super::error_reduction::ErrorReduction;
 use super::horizon::Horizon;
 use super::progress::Progress;
 use super::refit::{MOST_LEFT, NotAdded, Refitted, Undetermined, refit_from};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{Model, ParameterPath, edit};
 use crate::motion::{Motion, Split};
 use crate::output::number::mrad;
@@ -90,7 +90,10 @@ pub fn candidates_named(names: &[String], model: &Model) -> Result<Vec<Candidate
     for name in names {
         let candidate = Candidate::named(name, model)?;
         if candidates.contains(&candidate) {
-            return Err(CandidateError::Twice(candidate).into());
+            return Err(Error::usage(
+                format!("`{candidate}` is named twice"),
+                "name each effect once",
+            ));
         }
         candidates.push(candidate);
     }

@@ -2,7 +2,7 @@
 //! its name, its addresses, its start values.
 
 use crate::effects::{Effect, NameMatch, Parameter, SMOOTH_DIFFERENCE, Scope, listed, look_up};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::model::{EffectInstance, Model, ParameterPath, effect_on, named_at};
 use std::fmt;
 
@@ -37,20 +37,27 @@ impl Candidate {
     /// has room for it. Where there is only one joint it need not be named.
     ///
     /// # Errors
-    /// As [`CandidateError`] says.
-    pub fn named(name: &str, model: &Model) -> Result<Candidate, CandidateError> {
+    /// No such effect or joint, one that the joint or its drive does not suit, or that the model
+    /// holds already.
+    pub fn named(name: &str, model: &Model) -> Result<Candidate> {
         let (id, at) = match name.split_once('@') {
             Some((id, at)) => (id, Some(at)),
             None => (name, None),
         };
         let effect = effect_named(id)?;
         let joint = joint(effect, at, model)?;
-        let effect = effect_on(effect, joint, &model.joints).ok_or(CandidateError::NotOnSlide {
-            id: effect.info().id,
+        let effect = effect_on(effect, joint, &model.joints).ok_or_else(|| {
+            Error::usage(
+                format!("`{}` does not act on joints that slide", effect.info().id),
+                "name a joint that turns, or another effect",
+            )
         })?;
         let candidate = Candidate { effect, joint };
         if candidate.in_model(model) {
-            Err(CandidateError::InModel(candidate))
+            Err(Error::usage(
+                format!("the model holds `{candidate}` already"),
+                "refit its values with `handstand fit`",
+            ))
         } else {
             Ok(candidate)
         }
@@ -121,128 +128,28 @@ impl Candidate {
     }
 }
 
-/// Why a name is no candidate.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CandidateError {
-    /// No effect has this name.
-    #[error("there is no effect `{name}`")]
-    UnknownEffect {
-        /// The name.
-        name: String,
-        /// Effects that speak of it, or that are spelled alike.
-        similar: Vec<Effect>,
-    },
-    /// Several effects are called so.
-    #[error("`{name}` may be any of {} effects", called.len())]
-    SeveralEffects {
-        /// The name.
-        name: String,
-        /// Those that are called so.
-        called: Vec<Effect>,
-    },
-    /// The effect acts on the whole rig, and a joint was named.
-    #[error("`{id}` acts on the whole rig, not on one joint")]
-    WholeRig {
-        /// The effect.
-        id: &'static str,
-    },
-    /// The effect acts on one of several joints, and none was named.
-    #[error("`{id}` acts on one joint, and the model has {count}")]
-    JointNotNamed {
-        /// The effect.
-        id: &'static str,
-        /// Joints of the model.
-        count: usize,
-    },
-    /// The effect acts on none of the driven joints, or none is driven.
-    #[error("`{id}` acts on no driven joint of this model")]
-    NoDrivenJoint {
-        /// The effect.
-        id: &'static str,
-    },
-    /// The model has no such joint.
-    #[error("there is no joint `{joint}`")]
-    UnknownJoint {
-        /// What was named.
-        joint: String,
-        /// Joints of the model.
-        count: usize,
-    },
-    /// The joint's drive does not suit the effect.
-    #[error("`{id}` acts on {wanted} joints only, and joint {joint} is `{drive}`")]
-    UnsuitedDrive {
-        /// The effect.
-        id: &'static str,
-        /// `driven` or `passive`.
-        wanted: &'static str,
-        /// Joint counted from 1.
-        joint: usize,
-        /// The joint's drive.
-        drive: &'static str,
-    },
-    /// The joint slides, and the effect is one of hinges, or differs between the driven joints.
-    #[error("`{id}` does not act on joints that slide")]
-    NotOnSlide {
-        /// The effect.
-        id: &'static str,
-    },
-    /// The model holds the effect already.
-    #[error("the model holds `{0}` already")]
-    InModel(Candidate),
-    /// Two names mean the same effect.
-    #[error("`{0}` is named twice")]
-    Twice(Candidate),
-}
-
-impl From<CandidateError> for Error {
-    fn from(error: CandidateError) -> Error {
-        use CandidateError as E;
-        let remedy = match &error {
-            E::UnknownEffect { similar, .. } => match similar.as_slice() {
+/// The effect of this name: its id, or what people call it and no other effect.
+///
+/// # Errors
+/// An unknown name, with the effects that are like it; a name of several effects, with those.
+pub fn effect_named(name: &str) -> Result<Effect> {
+    match look_up(name) {
+        NameMatch::One(effect) => Ok(effect),
+        NameMatch::Several(called) => Err(Error::usage(
+            format!("`{name}` may be any of {} effects", called.len()),
+            format!("name one of them\n{}", listed(&called).join("\n")),
+        )),
+        NameMatch::Similar(similar) => {
+            let remedy = match similar.as_slice() {
                 [] => "`handstand effects` lists all".to_string(),
                 [one] => {
                     let id = one.info().id;
                     format!("did you mean `{id}`? `handstand effects` lists all")
                 }
                 several => format!("did you mean one of these?\n{}", listed(several).join("\n")),
-            },
-            E::SeveralEffects { called, .. } => {
-                format!("name one of them\n{}", listed(called).join("\n"))
-            }
-            E::WholeRig { id } => format!("write `{id}`"),
-            E::JointNotNamed { id, count } => {
-                format!("say which: `{id}@1` to `{id}@{count}`, or `{id}@all` that are driven")
-            }
-            E::NoDrivenJoint { .. } => "name a joint, counted from 1".to_string(),
-            E::UnknownJoint { count, .. } => {
-                format!("joints of this model count from 1 to {count}")
-            }
-            E::UnsuitedDrive { wanted, .. } => format!("name a {wanted} joint, or another effect"),
-            E::NotOnSlide { .. } => "name a joint that turns, or another effect".to_string(),
-            E::Twice(_) => "name each effect once".to_string(),
-            E::InModel(_) => "refit its values with `handstand fit`".to_string(),
-        };
-        Error::usage(error.to_string(), remedy)
-    }
-}
-
-/// The effect of this name: its id, or what people call it and no other effect.
-///
-/// # Errors
-/// [`CandidateError::UnknownEffect`] with those that are like it,
-/// [`CandidateError::SeveralEffects`] with those that are called so.
-pub fn effect_named(name: &str) -> Result<Effect, CandidateError> {
-    let owned = || name.to_string();
-    match look_up(name) {
-        NameMatch::One(effect) => Ok(effect),
-        NameMatch::Several(called) => Err(CandidateError::SeveralEffects {
-            name: owned(),
-            called,
-        }),
-        NameMatch::Similar(similar) => Err(CandidateError::UnknownEffect {
-            name: owned(),
-            similar,
-        }),
+            };
+            Err(Error::usage(format!("there is no effect `{name}`"), remedy))
+        }
     }
 }
 
@@ -250,34 +157,49 @@ pub fn effect_named(name: &str) -> Result<Effect, CandidateError> {
 ///
 /// # Errors
 /// As [`effect_named`].
-pub fn effect_ids(names: &[String]) -> Result<Vec<String>, CandidateError> {
+pub fn effect_ids(names: &[String]) -> Result<Vec<String>> {
     let ids = names
         .iter()
         .map(|name| Ok(effect_named(name)?.info().id.to_string()));
     ids.collect()
 }
 
-fn joint(effect: Effect, at: Option<&str>, model: &Model) -> Result<Option<usize>, CandidateError> {
+fn joint(effect: Effect, at: Option<&str>, model: &Model) -> Result<Option<usize>> {
     let (id, scope, count) = (effect.info().id, effect.info().scope, model.link_count());
     let joint = match (scope, at) {
         (Scope::WholeRig, None) => return Ok(None),
-        (Scope::WholeRig, Some(_)) => return Err(CandidateError::WholeRig { id }),
+        (Scope::WholeRig, Some(_)) => {
+            return Err(Error::usage(
+                format!("`{id}` acts on the whole rig, not on one joint"),
+                format!("write `{id}`"),
+            ));
+        }
         (_, None) if count == 1 => 0,
-        (_, None) => return Err(CandidateError::JointNotNamed { id, count }),
+        (_, None) => {
+            return Err(Error::usage(
+                format!("`{id}` acts on one joint, and the model has {count}"),
+                format!("say which: `{id}@1` to `{id}@{count}`, or `{id}@all` that are driven"),
+            ));
+        }
         (scope, Some("all")) => {
             return if scope != Scope::PassiveJoint && !model.driven_joints().is_empty() {
                 Ok(None)
             } else {
-                Err(CandidateError::NoDrivenJoint { id })
+                Err(Error::usage(
+                    format!("`{id}` acts on no driven joint of this model"),
+                    "name a joint, counted from 1",
+                ))
             };
         }
         (_, Some(at)) => {
             let numbered = at.parse::<usize>().ok();
             let numbered = numbered.filter(|joint| (1..=count).contains(joint));
             let joint = numbered.map(|joint| joint - 1);
-            let unknown = || CandidateError::UnknownJoint {
-                joint: at.to_string(),
-                count,
+            let unknown = || {
+                Error::usage(
+                    format!("there is no joint `{at}`"),
+                    format!("joints of this model count from 1 to {count}"),
+                )
             };
             joint
                 .or_else(|| model.joint_named(at))
@@ -290,10 +212,12 @@ fn joint(effect: Effect, at: Option<&str>, model: &Model) -> Result<Option<usize
         Scope::PassiveJoint if drive.is_driven() => "passive",
         _ => return Ok(Some(joint)),
     };
-    Err(CandidateError::UnsuitedDrive {
-        id,
-        wanted,
-        joint: joint + 1,
-        drive: drive.name(),
-    })
+    Err(Error::usage(
+        format!(
+            "`{id}` acts on {wanted} joints only, and joint {} is `{}`",
+            joint + 1,
+            drive.name()
+        ),
+        format!("name a {wanted} joint, or another effect"),
+    ))
 }

@@ -62,7 +62,7 @@ mod windows;
 pub use add::{
     Addition, Unhelpful, add_effects, add_effects_from, candidates_named, with_refitted,
 };
-pub use candidate::{Candidate, CandidateError, effect_ids, effect_named};
+pub use candidate::{Candidate, effect_ids, effect_named};
 pub use covariance::{Interval, intervals, intervals_of};
 pub use data::FitProblem;
 pub use drift::{Drift, DriftReport, DriftSession, OneValue, drift};
@@ -70,7 +70,7 @@ pub use error_reduction::ErrorReduction;
 pub use fit::{Fit, FitOptions};
 pub use fitted_value::locally_fitted_values;
 pub use fitted_value::{FittedValue, fitted_values};
-pub use free::{FreeError, free_parameters, freed};
+pub use free::{free_parameters, freed};
 pub use halt::{Abandoned, StopSwitch};
 pub use halt::{Halt, Halted};
 pub use horizon::{Horizon, Window};

@@ -1,6 +1,5 @@
 //! Weights in a study's file: a number, a diagonal, or a matrix.
 
-use crate::StudyError;
 use crate::error::Result;
 use crate::model::Limits;
 use crate::model::reader::Table;
@@ -26,6 +25,12 @@ pub(super) fn weight(
         rows if rows.iter().all(|row| row.len() == size) => {
             Weight::Matrix(DMatrix::from_fn(size, size, |i, j| rows[i][j]))
         }
-        _ => return Err(table.bad(key, StudyError::NotSquare(key))),
+        _ => {
+            return Err(table.bad(
+                key,
+                format!("`{key}` is no square matrix"),
+                "give a number, a diagonal such as [100, 100, 1, 1], or as many rows as columns",
+            ));
+        }
     }))
 }

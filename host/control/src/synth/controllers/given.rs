@@ -1,7 +1,7 @@
 //! Gains that were designed elsewhere, as a controller among the others.
 
-use super::{ControllerDesign, ControllerInfo, ControllerReason, DesignModel, Speeds};
-use crate::error::Result;
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
+use crate::error::{Error, Result};
 use crate::model::{Drive, Model};
 use crate::sim::closed_loop::{Controller, StateFeedback};
 use crate::synth::{StateFeedbackPlan, upright};
@@ -42,22 +42,36 @@ impl GivenGains {
             .chain(plan.u0.iter().copied())
             .any(|off| off.abs() > AT_REST)
         {
-            return Err(ControllerReason::NotUpright.into());
+            return Err(Error::design(
+                "the plan does not hold the robot upright without torque",
+                "studies hold robots upright: design without --pose, or ask `handstand gains` for \
+                 the verdict",
+            ));
         }
         if plan.ts_s.is_none_or(|ts_s| (ts_s - period_s).abs() > 1e-9) {
-            let ts_s = plan.ts_s;
-            return Err(ControllerReason::OtherPeriod { ts_s, period_s }.into());
+            let sampled = plan.ts_s.map(|ts_s| format!("every {ts_s} s"));
+            let sampled = sampled.unwrap_or_else(|| "continuous time".into());
+            return Err(Error::design(
+                format!("the plan is for {sampled}, not for every {period_s} s"),
+                "give the sampling time of the plan, or design for this one",
+            ));
         }
         let full_nm = |joint: usize| match &model.joints[joint].drive {
             Drive::Torque => Ok(1.0),
             Drive::Duty(motor) => Ok(motor.stall_torque_nm),
-            _ => Err(ControllerReason::NoTorque { joint: joint + 1 }),
+            _ => Err(Error::design(
+                format!(
+                    "joint {} is commanded neither in torque nor in duty",
+                    joint + 1
+                ),
+                "studies command torques; ask `handstand gains` for the verdict on this plan",
+            )),
         };
         let full_nm: Vec<f64> = model
             .driven_joints()
             .into_iter()
             .map(full_nm)
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<_>>()?;
         let row = |(row, full): (&Vec<f64>, &f64)| {
             let (own, past) = row.split_at(2 * joints);
             let own = own.iter().map(|k| full * k);
@@ -88,7 +102,10 @@ impl ControllerDesign for GivenGains {
     fn build(&self, known: &DesignModel) -> Result<Box<dyn Controller>> {
         let (joints, drives) = (known.joints(), known.drives());
         if (joints, drives) != (self.joints, self.k.len()) {
-            return Err(ControllerReason::OtherRobot { joints, drives }.into());
+            return Err(Error::design(
+                format!("the plan is not for {joints} joints, {drives} of them driven"),
+                "give the plan that was made for this robot",
+            ));
         }
         Ok(Box::new(StateFeedback::new(joints, self.k.clone())))
     }

@@ -20,7 +20,6 @@ mod offset;
 mod on_board;
 mod paper;
 mod plant;
-mod reason;
 mod regulator;
 mod robust;
 mod servo;
@@ -35,7 +34,6 @@ pub use info::{ControllerDesign, ControllerInfo, Speeds};
 pub use linear_law::LinearLaw;
 pub use observed::ObservedDesign;
 pub use on_board::{OnBoard, board_plant};
-pub use reason::ControllerReason;
 pub use robust::{MASS_ERROR, MultiModel, WEIGHT};
 pub use servo::{ServoLag, ThroughServos};
 

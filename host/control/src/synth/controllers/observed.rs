@@ -9,8 +9,8 @@
 use super::dead_zone::AssumedDrive;
 use super::plant::{continuous, plant};
 use super::sliding::Surface;
-use super::{ControllerDesign, ControllerInfo, ControllerReason, DesignModel, Speeds};
-use crate::error::Result;
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
+use crate::error::{Error, Result};
 use crate::sim::closed_loop::state_feedback::dot;
 use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, Gains, dlqr, rounding_variance, zoh};
@@ -238,7 +238,7 @@ fn run(
     for _ in 0..LONGEST_START {
         let crossed = p.columns(0, readings).into_owned();
         let measured = crossed.rows(0, readings) + noise;
-        let inverse = measured.cholesky().ok_or(ControllerReason::Unobserved)?;
+        let inverse = measured.cholesky().ok_or_else(unobserved)?;
         let gain = inverse.solve(&crossed.transpose()).transpose();
         p -= &gain * crossed.transpose();
         p = &believed.a * &p * believed.a.transpose() + process;
@@ -253,9 +253,17 @@ fn run(
         }
     }
     if gains.iter().flatten().any(|gain| !gain.is_finite()) {
-        return Err(ControllerReason::Unobserved.into());
+        return Err(unobserved());
     }
     Ok((gains, p))
+}
+
+/// The filter's innovation has no positive definite covariance.
+fn unobserved() -> Error {
+    Error::design(
+        "the readings do not tell the state",
+        "read finer, or sample faster",
+    )
 }
 
 /// A matrix row by row.

@@ -13,12 +13,12 @@
 //! next        = A (s + L innovation) + B applied
 //! ```
 
+use super::DesignModel;
 use super::best::BEST;
 use super::board_timing::{BoardTiming, ROUNDED};
 use super::observed::{Options, process_noise, regulator};
 use super::plant::{continuous, with_offsets};
-use super::{ControllerReason, DesignModel};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::synth::{Continuous, Discrete, kalman, zoh, zoh_each};
 use handstand_shared::observer::{
     DELAYS, ESTIMATED, INPUTS, JOINTS, PAST, READINGS, SEEN, STATE, WIDTH,
@@ -129,7 +129,10 @@ pub fn board_plant(known: &DesignModel, timing: &BoardTiming) -> Result<Discrete
 fn on_time(known: &DesignModel, timing: &BoardTiming) -> Result<DesignModel> {
     let (joints, drives) = (known.joints(), known.drives());
     if (joints, drives) != (JOINTS, INPUTS) {
-        return Err(ControllerReason::BoardSize { joints, drives }.into());
+        return Err(Error::design(
+            format!("{joints} joints, {drives} of them driven"),
+            "the CM-5 balances three joints of which two are driven",
+        ));
     }
     Ok(DesignModel {
         delay_s: timing.latest_effect_s(),
@@ -246,8 +249,7 @@ fn filter(
 fn widened(known: &DesignModel, timing: &BoardTiming, wide: &Continuous) -> Result<Discrete> {
     let late = zoh_each(wide, known.period_s, &timing.effects_s())?;
     if late.delayed_inputs > DELAYS {
-        let delay_s = known.delay_s;
-        return Err(ControllerReason::TooLate { delay_s }.into());
+        return Err(too_late(known.delay_s));
     }
     let size = ESTIMATED + PAST;
     let mut a = late
@@ -319,18 +321,30 @@ fn ago(known: &DesignModel, wide: &Continuous, effect_s: f64, age_s: f64) -> Res
         let span_s = at_s - begins_s.max(-age_s);
         if span_s > 1e-9 {
             if past > DELAYS {
-                let delay_s = effect_s + age_s;
-                return Err(ControllerReason::TooLate { delay_s }.into());
+                return Err(too_late(effect_s + age_s));
             }
             let held = zoh(wide, span_s, 0.0)?;
             let from = ESTIMATED + INPUTS * (past - 1);
             let mut columns = ago.columns_mut(from, INPUTS);
             columns -= &held.b;
             let before = held.a.lu().solve(&ago);
-            ago = before.ok_or(ControllerReason::Irreversible)?;
+            ago = before.ok_or_else(|| {
+                Error::design("the plant cannot be followed back", "sample faster")
+            })?;
             at_s -= span_s;
         }
         past += 1;
     }
     Ok(ago)
+}
+
+/// Inputs or readings older than the CM-5 keeps inputs.
+fn too_late(delay_s: f64) -> Error {
+    Error::design(
+        format!("inputs or readings {:.1} ms late", 1e3 * delay_s),
+        format!(
+            "the CM-5 keeps the inputs of {DELAYS} periods: shorten the delay, or sample more \
+             slowly"
+        ),
+    )
 }

@@ -9,8 +9,8 @@
 use super::best::BEST;
 use super::observed::{ObservedDesign, Options, by_rows};
 use super::plant::with_offsets;
-use super::{ControllerDesign, ControllerInfo, ControllerReason, DesignModel, Speeds};
-use crate::error::Result;
+use super::{ControllerDesign, ControllerInfo, DesignModel, Speeds};
+use crate::error::{Error, Result};
 use crate::sim::closed_loop::state_feedback::dot;
 use crate::sim::closed_loop::{Controller, Measurement};
 use crate::synth::{Discrete, dlqr, zoh};
@@ -50,7 +50,12 @@ impl Surface {
     pub fn sliding(plant: &Discrete, riccati: &DMatrix<f64>) -> Result<Self> {
         let bp = plant.b.transpose() * riccati;
         let reach = (&bp * &plant.b).try_inverse();
-        let reach = reach.ok_or(ControllerReason::SlidingSurface)?;
+        let reach = reach.ok_or_else(|| {
+            Error::design(
+                "the inputs do not reach the sliding surface",
+                "drive other joints",
+            )
+        })?;
         let s = reach * bp;
         let k = &s * &plant.a - (1.0 - REACHING) * &s;
         Ok(Surface::new(k, Some(s)))

@@ -1,6 +1,7 @@
 //! The fixed-point law of a design: ranges and steps of all that its table multiplies.
 
 use super::Design;
+use crate::error::Problem;
 use crate::synth::error::DesignError;
 use crate::synth::fixed_law::{FixedLaw, Loss};
 use crate::synth::integral::{Integral, Sums};
@@ -57,10 +58,14 @@ impl Design {
         let law = quantise(&self.gains.k, &self.x0, &self.u0, &ranges, &format)?;
         let loss = law.loss(plant, &self.gains, &self.x0, &self.u0, &ranges.state)?;
         if loss.radius_fixed >= 1.0 {
-            return Err(DesignError::UnstableWhenRounded {
-                bits: law.bits,
-                radius: loss.radius_fixed,
-            });
+            return Err(DesignError::Rounded(Problem::new(
+                format!(
+                    "rounded to {} bits the gains no longer stabilise: the spectral radius is \
+                     {:.6}",
+                    law.bits, loss.radius_fixed
+                ),
+                "declare smaller ranges: steps and gains are rounded to what they need",
+            )));
         }
         Ok(FixedDesign {
             ranges,
@@ -81,7 +86,12 @@ impl Design {
     ) -> Result<Sums, DesignError> {
         let (own, word) = (self.plant.a.nrows(), largest_word(format.bits));
         let range = integral.range(&self.gains.k, own, input);
-        let range = range.ok_or(DesignError::IntegralUnused)?;
+        let range = range.ok_or_else(|| {
+            DesignError::model(
+                "the gains of the integrals are singular: some sum acts on no input",
+                "raise the weight of the integrals",
+            )
+        })?;
         let mut steps = match format.state_step.take() {
             Some(steps) => steps,
             None => self.own_steps(state, word),

@@ -74,7 +74,7 @@ pub(in crate::model) enum FaultyPart {
 impl Fault {
     pub fn new(body: usize, part: FaultyPart, error: &Error) -> Self {
         let (place, what) = match error {
-            Error::Data { place, reason } => (Some(place.clone()), reason.to_string()),
+            Error::Data { place, problem } => (Some(place.clone()), problem.what.clone()),
             other => (None, other.to_string()),
         };
         let remedy = error.remedy().unwrap_or_default().into_owned();

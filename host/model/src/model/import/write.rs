@@ -67,13 +67,12 @@ pub(super) fn toml(
         &format!("{effects}{UNCERTAINTY}{}", log_table(&chain.links)),
     );
     // The model's text is not there for anyone to look into.
-    text.map_err(|error| match &error {
-        Error::Data { reason, .. } => {
-            let remedy = error.remedy().unwrap_or_default().into_owned();
-            let what = format!("no model follows from its figures: {reason}");
-            Error::data(Place::file(path), what, remedy)
+    text.map_err(|error| match error {
+        Error::Data { problem, .. } => {
+            let what = format!("no model follows from its figures: {problem}");
+            Error::data(Place::file(path), what, problem.remedy)
         }
-        _ => error,
+        error => error,
     })
 }
 

@@ -2,7 +2,6 @@
 
 use super::super::limits::Limits;
 use super::super::reader::Table;
-use super::super::reason::ModelReason;
 use super::super::{
     ArmFigures, Column, ColumnMean, Dimension, Joint, JointColumns, Link, LogColumns, RateSensor,
     Unit,
@@ -40,7 +39,11 @@ pub(super) fn read(root: &Table, links: &[Link], joints: &[Joint]) -> Result<Log
     let name = |key: &str| -> Result<_> { Ok(log.text(key)?.map(str::to_string)) };
     let payload = log.table("payload")?;
     if payload.is_some() && links.is_empty() {
-        return Err(log.bad_key("payload", ModelReason::PayloadInSpace));
+        return Err(log.bad_key(
+            "payload",
+            "a robot in space has no payload column yet",
+            "remove it; put the mass into a link of the robot's file",
+        ));
     }
     let at_m = payload.map(|table| table.required_number("at_m", EITHER_SIGN));
     Ok(LogColumns {
@@ -65,17 +68,21 @@ pub(super) fn read(root: &Table, links: &[Link], joints: &[Joint]) -> Result<Log
 
 fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
     let tables = log.tables("joint")?;
-    let (named, joints_known) = (tables.len(), joints.len());
-    if let Some(extra) = tables.get(joints_known) {
-        return Err(extra.bad_table(ModelReason::ExtraColumns {
-            joints: joints_known,
-        }));
+    let (named, known) = (tables.len(), joints.len());
+    if let Some(extra) = tables.get(known) {
+        return Err(extra.bad_table(
+            format!(
+                "[[log.joint]] {} is one too many for {known} joint(s)",
+                known + 1
+            ),
+            "give one `[[log.joint]]` for each `[[joint]]`, in order",
+        ));
     }
-    if named < joints_known {
-        return Err(log.bad_table(ModelReason::MissingColumns {
-            named,
-            joints: joints_known,
-        }));
+    if named < known {
+        return Err(log.bad_table(
+            format!("[log] names the columns of {named} joint(s) out of {known}"),
+            "add one `[[log.joint]]` for each `[[joint]]`, in order",
+        ));
     }
     let pairs = tables.iter().zip(joints);
     let columns = pairs.map(|(table, joint)| of_joint(table, joint));
@@ -83,7 +90,10 @@ fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
     if columns.iter().any(|joint| joint.measured().is_some()) {
         Ok(columns)
     } else {
-        Err(log.bad_table(ModelReason::NothingMeasured))
+        Err(log.bad_table(
+            "[log] names neither a position nor a velocity of any joint",
+            "name the column of an angle, or of a rate: `velocity`",
+        ))
     }
 }
 
@@ -93,7 +103,10 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
     let position = mean(table, "position", Dimension::Angle.on(axis))?;
     let velocity = mean(table, "velocity", Dimension::Speed.on(axis))?;
     if axis == Axis::Slide && position.is_none() {
-        return Err(table.bad_table(ModelReason::SlideUnmeasured));
+        return Err(table.bad_table(
+            "[[log.joint]] of a joint that slides lacks `position`",
+            "name the column of its displacement: a slide's speed alone will not do",
+        ));
     }
     let (rate_sensor, rate) = rate(table, axis, position.is_some())?;
     let wanted = Dimension::of_input(joint.drive.name(), axis);
@@ -101,14 +114,22 @@ fn of_joint(table: &Table, joint: &Joint) -> Result<JointColumns> {
         (None, false) => None,
         (Some(wanted), true) => mean(table, "input", wanted)?,
         (None, true) => {
-            return Err(table.bad_key("input", ModelReason::PassiveInput));
+            return Err(table.bad_key(
+                "input",
+                "a passive joint has no input",
+                "remove `input`, or say what drives the joint",
+            ));
         }
         (Some(wanted), false) => {
-            return Err(table.bad_table(ModelReason::MissingInput {
-                table: table.name.clone(),
-                drive: joint.drive.name(),
-                wanted,
-            }));
+            let unit = wanted.unit_names().next().unwrap_or("1");
+            return Err(table.bad_table(
+                format!(
+                    "{} lacks `input`, and its joint is driven by `{}`",
+                    table.name,
+                    joint.drive.name()
+                ),
+                format!("add `input = {{ column = \"...\", unit = \"{unit}\" }}`"),
+            ));
         }
     };
     Ok(JointColumns {
@@ -129,13 +150,27 @@ fn rate(table: &Table, axis: Axis, has_position: bool) -> Result<(RateSensor, Op
             continue;
         };
         if axis == Axis::Slide {
-            return Err(table.bad_key(key, ModelReason::RateOfSlide { key }));
+            return Err(table.bad_key(
+                key,
+                format!("a joint that slides has no `{key}`"),
+                "remove it; a slide's `velocity` helps to guess start states",
+            ));
         }
         if !has_position {
-            return Err(table.bad_key(key, ModelReason::RateWithoutAngle { key }));
+            return Err(table.bad_key(
+                key,
+                format!(
+                    "`{key}` is a rate sensor beside an angle, and this joint has no `position`"
+                ),
+                "call it `velocity`: the joint is then compared by its rate",
+            ));
         }
         if found.1.is_some() {
-            return Err(table.bad_key(key, ModelReason::TwoRates));
+            return Err(table.bad_key(
+                key,
+                "a joint has one rate sensor: `gyro` or `tachometer`",
+                "keep the one that reads more finely",
+            ));
         }
         found = (sensor, Some(rate));
     }
@@ -150,7 +185,11 @@ fn mean(table: &Table, key: &'static str, dimension: Dimension) -> Result<Option
         table.table(key)?.into_iter().collect()
     };
     if table.has(key) && tables.is_empty() {
-        return Err(table.bad(key, ModelReason::NoColumns { quantity: key }));
+        return Err(table.bad(
+            key,
+            format!("`{key}` names no column"),
+            "name one, such as { column = \"q_rad\", unit = \"rad\" }",
+        ));
     }
     let columns = tables.iter().map(|found| column(found, key, dimension));
     Ok(ColumnMean::of(columns.collect::<Result<_>>()?))
@@ -204,18 +243,18 @@ fn unit(table: &Table, quantity: &'static str, wanted: Dimension) -> Result<Unit
         None => None,
     };
     let unit = Unit::of(name, wanted, scale).or_else(|| Unit::named(name, scale));
+    let wrong = |what: String| {
+        let units: Vec<&str> = wanted.unit_names().collect();
+        table.bad("unit", what, format!("write one of: {}", units.join(", ")))
+    };
     let Some(unit) = unit else {
-        let unit = name.to_string();
-        return Err(table.bad("unit", ModelReason::UnknownUnit { unit, wanted }));
+        return Err(wrong(format!("unknown unit `{name}`")));
     };
     if unit.dimension != wanted {
-        let reason = ModelReason::OtherDimension {
-            unit: unit.name,
-            found: unit.dimension,
-            quantity,
-            wanted,
-        };
-        return Err(table.bad("unit", reason));
+        return Err(wrong(format!(
+            "unit `{}` measures {}, and `{quantity}` is {wanted}",
+            unit.name, unit.dimension
+        )));
     }
     match Unit::scale_key(name, wanted).filter(|_| unit.si.is_nan()) {
         Some(key) => Err(table.lacks(key)),

@@ -2,10 +2,9 @@
 
 use super::super::limits::Limits;
 use super::super::reader::Table;
-use super::super::reason::ModelReason;
 use super::super::{EffectInstance, Joint, Robot};
 use crate::effects::{EFFECTS, Effect, Scope};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::effect_on;
 
 pub(super) fn read(
@@ -19,15 +18,28 @@ pub(super) fn read(
         let effect = effect(&table, joints, laws, robot)?;
         let id = effect.effect.info().id;
         if robot.is_some() && !effect.effect.acts_in_space() {
-            return Err(table.bad("kind", ModelReason::NotInSpace { id }));
+            return Err(table.bad(
+                "kind",
+                format!("`{id}` is that of a planar chain, and this is a robot in space"),
+                "remove it",
+            ));
         }
         let meets = |other: &EffectInstance| other.meets(id, effect.joint, joints);
         if effects.iter().any(meets) {
-            return Err(table.bad("kind", ModelReason::EffectTwice { id }));
+            return Err(effect_twice(&table, "kind", id));
         }
         effects.push(effect);
     }
     Ok(effects)
+}
+
+/// An effect twice at one joint.
+pub(super) fn effect_twice(table: &Table, key: &str, id: &str) -> Error {
+    table.bad(
+        key,
+        format!("`{id}` is there twice"),
+        "keep one of the two, or give it another joint",
+    )
 }
 
 fn effect(
@@ -44,8 +56,13 @@ fn effect(
     let effect = table.required("kind", table.choice("kind", &kinds)?)?;
     let joint = at(table, effect, joints, robot)?;
     let id = effect.info().id;
-    let effect = effect_on(effect, joint, joints)
-        .ok_or_else(|| table.bad("kind", ModelReason::NotOnSlide { id }))?;
+    let effect = effect_on(effect, joint, joints).ok_or_else(|| {
+        table.bad(
+            "kind",
+            format!("`{id}` does not act on joints that slide"),
+            "name a joint that turns, or another effect",
+        )
+    })?;
     let info = effect.info();
 
     let mut known = vec!["kind", "joint", "fitted"];
@@ -72,21 +89,28 @@ fn at(
     joints: &[Joint],
     robot: Option<&Robot>,
 ) -> Result<Option<usize>> {
-    if effect.info().scope == Scope::WholeRig {
-        let id = effect.info().id;
+    let (id, scope) = (effect.info().id, effect.info().scope);
+    if scope == Scope::WholeRig {
         return if table.has("joint") {
-            Err(table.bad_key("joint", ModelReason::WholeRig { id }))
+            Err(table.bad_key(
+                "joint",
+                format!("`{id}` acts on the whole rig, not on one joint"),
+                "leave the joint out",
+            ))
         } else {
             Ok(None)
         };
     }
     if table.is_text("joint", "all") {
-        let id = effect.info().id;
         let driven = joints.iter().any(|joint| joint.drive.is_driven());
-        return if driven && effect.info().scope != Scope::PassiveJoint {
+        return if driven && scope != Scope::PassiveJoint {
             Ok(None)
         } else {
-            Err(table.bad("joint", ModelReason::NoDrivenJoint { id }))
+            Err(table.bad(
+                "joint",
+                format!("`{id}` acts on no driven joint of this model"),
+                "name a joint, counted from 1",
+            ))
         };
     }
     let names = robot.map_or(&[][..], |robot| &robot.joints);
@@ -95,6 +119,19 @@ fn at(
         Some(joint) => joint,
         None => table.required("joint", table.index("joint", joints.len())?)?,
     };
-    ModelReason::unsuited(effect, joint, &joints[joint])
-        .map_or(Ok(Some(joint)), |reason| Err(table.bad("joint", reason)))
+    let drive = &joints[joint].drive;
+    let wanted = match (scope, drive.is_driven()) {
+        (Scope::DrivenJoint, false) => "driven",
+        (Scope::PassiveJoint, true) => "passive",
+        _ => return Ok(Some(joint)),
+    };
+    Err(table.bad(
+        "joint",
+        format!(
+            "`{id}` acts on {wanted} joints only, and joint {} is `{}`",
+            joint + 1,
+            drive.name()
+        ),
+        format!("name a {wanted} joint, or another effect"),
+    ))
 }

@@ -2,10 +2,9 @@
 
 use super::super::reader::Table;
 use super::EITHER_SIGN;
+use super::effects::effect_twice;
 use crate::effects::Effect;
-use crate::effects::expression::{
-    DefinitionFault, ExpressionReason, LawDefinition, LawParameter, LawSite, effect,
-};
+use crate::effects::expression::{DefinitionFault, LawDefinition, LawParameter, LawSite, effect};
 use crate::error::Result;
 
 pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
@@ -14,7 +13,7 @@ pub(super) fn read(root: &Table) -> Result<Vec<Effect>> {
         let law = law(&table)?;
         let id = law.info().id;
         if laws.iter().any(|other| other.info().id == id) {
-            return Err(table.bad("name", super::super::ModelReason::EffectTwice { id }));
+            return Err(effect_twice(&table, "name", id));
         }
         laws.push(law);
     }
@@ -27,7 +26,13 @@ fn law(table: &Table) -> Result<Effect> {
     let site = match LawSite::ALL.into_iter().filter(given).collect::<Vec<_>>()[..] {
         [site] => site,
         [] => LawSite::Torque,
-        _ => return Err(table.bad("friction", ExpressionReason::TwoSites)),
+        _ => {
+            return Err(table.bad(
+                "friction",
+                "`torque` and `friction` in one law",
+                "write two [[expression]] tables, each with its own name",
+            ));
+        }
     };
     let parameters = table.tables("parameter")?;
     let definition = LawDefinition {
@@ -38,10 +43,11 @@ fn law(table: &Table) -> Result<Effect> {
         slides: true,
     };
     effect(&definition).map_err(|fault| match fault {
-        DefinitionFault::Name(reason) => table.bad("name", reason),
-        DefinitionFault::Parameter(index, reason) => parameters[index].bad("key", reason),
+        DefinitionFault::Name(problem) => problem.at(table.place_of("name")),
+        DefinitionFault::Parameter(index, problem) => problem.at(parameters[index].place_of("key")),
         DefinitionFault::Expression(misplaced) => {
-            table.bad_character(site.key(), misplaced.at, misplaced.reason)
+            let place = table.place_of_character(site.key(), misplaced.at);
+            misplaced.problem.at(place)
         }
     })
 }

@@ -1,8 +1,8 @@
 //! `[fit]`: which values are free, and within which bounds.
 
-use crate::error::Result;
+use crate::error::{Error, Problem, Result};
 use crate::model::reader::Table;
-use crate::model::{Model, ModelReason, ParameterPath};
+use crate::model::{Model, ParameterPath};
 use std::ops::Range;
 
 /// A written number is rounded to six digits: so far beyond a bound, as a share, it is on it.
@@ -36,18 +36,30 @@ fn free(fit: &Table, model: &Model) -> Result<Vec<ParameterPath>> {
     let mut free = Vec::new();
     for (text, span) in named {
         let (parameter, value) = value_at(fit, text, span.clone(), model)?;
-        let path = text.to_string();
-        let reason = if !value.is_finite() {
-            ModelReason::FreeInfinite { path }
+        let problem = if !value.is_finite() {
+            infinite(text)
         } else if free.contains(&parameter) {
-            ModelReason::FreeTwice { path }
+            twice(text)
         } else {
             free.push(parameter);
             continue;
         };
-        return Err(fit.refused(span, reason));
+        return Err(problem.at(fit.place(span)));
     }
     Ok(free)
+}
+
+/// A value that is infinite.
+pub(super) fn infinite(path: &str) -> Problem {
+    Problem::new(
+        format!("`{path}` is infinite, so nothing can be fitted"),
+        "give it a value to start from",
+    )
+}
+
+/// A value that is named twice.
+pub(super) fn twice(path: &str) -> Problem {
+    Problem::new(format!("`{path}` is named twice"), "remove one")
 }
 
 /// An address, and the value that the model has there.
@@ -58,10 +70,14 @@ pub(super) fn value_at(
     model: &Model,
 ) -> Result<(ParameterPath, f64)> {
     let parsed = crate::model::address::read_in(text, model.robot.as_ref());
-    let parameter = parsed.map_err(|reason| fit.refused(span.clone(), reason))?;
-    let path = text.to_string();
-    let value = parameter.get(model);
-    let value = value.ok_or_else(|| fit.refused(span, ModelReason::FreeAbsent { path }))?;
+    let parameter = parsed.map_err(|problem| problem.at(fit.place(span.clone())))?;
+    let value = parameter.get(model).ok_or_else(|| {
+        Error::data(
+            fit.place(span),
+            format!("`{text}` is not in this model"),
+            "add its link, drive or effect, or remove it here",
+        )
+    })?;
     Ok((parameter, value))
 }
 
@@ -77,28 +93,24 @@ fn bounds(fit: &Table, model: &Model) -> Result<Bounds> {
             .pair(key)?
             .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let possible = parameter.possible();
-        let path = key.to_string();
-        let reason = if bounds.iter().any(|(own, _)| *own == parameter) {
-            ModelReason::FreeTwice { path }
+        let problem = if bounds.iter().any(|(own, _)| *own == parameter) {
+            twice(key)
         } else if !(low < high && low < possible.1 && high > possible.0) {
-            ModelReason::NoBounds {
-                path,
-                low,
-                high,
-                possible,
-            }
+            let (least, most) = possible;
+            Problem::new(
+                format!("from {low} to {high} `{key}` has no possible value"),
+                format!("write the lower one first; possible is {least} to {most}"),
+            )
         } else if !(low - slack(low)..=high + slack(high)).contains(&value) {
-            ModelReason::OutsideBounds {
-                path,
-                value,
-                low,
-                high,
-            }
+            Problem::new(
+                format!("`{key}` = {value} lies outside its bounds, {low} to {high}"),
+                "a fit begins at the value: move it inside, or widen them",
+            )
         } else {
             bounds.push((parameter, (low, high)));
             continue;
         };
-        return Err(table.bad(key, reason));
+        return Err(problem.at(table.place_of(key)));
     }
     Ok(bounds)
 }

@@ -2,7 +2,6 @@
 
 use super::super::field::LinkField;
 use super::super::reader::Table;
-use super::super::reason::ModelReason;
 use super::super::{Joint, Link, Model, RateSensor, Robot};
 use super::{EITHER_SIGN, NOT_NEGATIVE, drive};
 use crate::dynamics::{SlideAxis, SpatialEquations};
@@ -64,24 +63,35 @@ pub(super) fn check(root: &Table, model: &Model) -> Result<()> {
     let log = root.required_table("log")?;
     for (table, joint) in log.tables("joint")?.iter().zip(&model.log.joints) {
         if joint.rate.is_some() && joint.rate_sensor == RateSensor::Gyro {
-            return Err(table.bad_key("gyro", ModelReason::GyroInSpace));
+            return Err(table.bad_key(
+                "gyro",
+                "a gyro feels joints whose axes are parallel, and this is a robot in space",
+                "remove `gyro`; a joint's own rate is a `tachometer`",
+            ));
         }
     }
-    stiff(model).map_or(Ok(()), |reason| Err(root.bad_table(reason)))
+    match stiff(model) {
+        None => Ok(()),
+        Some(what) => Err(root.bad_table(
+            what,
+            "add the rotor's inertia, `kind = \"armature\"`, or write a shorter `step_s`",
+        )),
+    }
 }
 
 /// Why a step cannot follow some joint, if it cannot: at the pose in which all joints are at 0.
-fn stiff(model: &Model) -> Option<ModelReason> {
+fn stiff(model: &Model) -> Option<String> {
     let tree = model.rig(false).tree?;
     let inertias = SpatialEquations::new(&tree).joint_inertias(&vec![0.0; tree.len()]);
     (model.joints.iter().zip(inertias).enumerate()).find_map(|(index, (joint, inertia))| {
         let motor = joint.drive.motor()?;
         let brakes_s = inertia * motor.no_load_speed_rad_s / motor.stall_torque_nm;
-        (model.step_s > STIFF * brakes_s).then(|| ModelReason::StiffJoint {
-            name: model.joint_name(index).unwrap_or_default().to_string(),
-            inertia,
-            brakes_s,
-            step_s: model.step_s,
+        let (name, step_s) = (model.joint_name(index).unwrap_or_default(), model.step_s);
+        (step_s > STIFF * brakes_s).then(|| {
+            format!(
+                "joint `{name}` meets {inertia:.1e} kg m^2, which its motor's back-EMF brakes \
+                 within {brakes_s:.1e} s: steps of {step_s} s cannot follow"
+            )
         })
     })
 }
@@ -89,7 +99,7 @@ fn stiff(model: &Model) -> Option<ModelReason> {
 /// The tables of this kind, one for each of these names and in their order; or none at all.
 fn named<'a>(
     root: &Table<'a>,
-    what: &'static str,
+    what: &str,
     names: &[String],
     may_lack: bool,
 ) -> Result<Vec<Table<'a>>> {
@@ -99,23 +109,22 @@ fn named<'a>(
     }
     if tables.len() != names.len() {
         let (found, wanted) = (tables.len(), names.len());
-        let names = names.join(", ");
-        let reason = ModelReason::RobotCount {
-            what,
-            found,
-            wanted,
-            names,
-        };
-        return Err(match tables.get(wanted) {
-            Some(extra) => extra.bad_table(reason),
-            None => root.bad_table(reason),
-        });
+        return Err(tables.get(wanted).unwrap_or(root).bad_table(
+            format!("{found} [[{what}]] tables for {wanted} joints of the robot"),
+            format!(
+                "one each, in this order: {}; hold others in [rig] locked",
+                names.join(", ")
+            ),
+        ));
     }
     for (table, wanted) in tables.iter().zip(names) {
         let name = table.required_text("name")?;
         if name != wanted {
-            let (name, wanted) = (name.to_string(), wanted.clone());
-            return Err(table.bad("name", ModelReason::OtherName { what, name, wanted }));
+            return Err(table.bad(
+                "name",
+                format!("{what} `{name}` is not the robot's `{wanted}`"),
+                "name joints and links in the order of the robot's file",
+            ));
         }
     }
     Ok(tables)

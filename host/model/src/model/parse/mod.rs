@@ -16,7 +16,6 @@ pub(super) mod uncertainty;
 use super::field::{JOINT_INERTIA, JointField, LinkField, POSITIVE};
 use super::limits::Limits;
 use super::reader::Table;
-use super::reason::ModelReason;
 use super::source::TomlSource;
 use super::{AngleZero, Angles, Drive, Joint, Link, Model, Motor, Robot};
 use crate::dynamics::SlideAxis;
@@ -44,6 +43,17 @@ pub(super) fn model(text: &str, file: &Path) -> Result<Model> {
     model_of(text, file, None)
 }
 
+const TABLES: [&str; 8] = [
+    "rig",
+    "link",
+    "joint",
+    "expression",
+    "effect",
+    "fit",
+    "uncertainty",
+    "log",
+];
+
 /// Reads a model whose robot is this text, not what is in the robot's file.
 ///
 /// # Errors
@@ -52,16 +62,7 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
     let source = TomlSource { text, file };
     let document = source.document()?;
     let root = Table::root(&source, &document);
-    root.only(&[
-        "rig",
-        "link",
-        "joint",
-        "expression",
-        "effect",
-        "fit",
-        "uncertainty",
-        "log",
-    ])?;
+    root.only(&TABLES)?;
 
     let rig = root.required_table("rig")?;
     let robot = Robot::read(&rig, file, robot)?;
@@ -114,9 +115,7 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
         uncertain: Vec::new(),
         log,
     };
-    if model.slides() && model.angles == Angles::Absolute {
-        return Err(rig.bad("angles", ModelReason::AbsoluteSlides));
-    }
+    slides_are_relative(&rig, &model)?;
     in_space::check(&root, &model)?;
     (model.free, model.bounds) = fit::read(&root, &model)?;
     model.uncertain = uncertainty::read(&root, &model)?;
@@ -127,6 +126,17 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
         }
     }
     Ok(model)
+}
+
+fn slides_are_relative(rig: &Table, model: &Model) -> Result<()> {
+    if model.slides() && model.angles == Angles::Absolute {
+        return Err(rig.bad(
+            "angles",
+            "the model has joints that slide, and angles from the world",
+            "write `angles = \"relative\"`: each from the link before",
+        ));
+    }
+    Ok(())
 }
 
 const ANGLE_ZERO: [(&str, AngleZero); 3] = [
@@ -169,17 +179,24 @@ fn inertia(table: &Table, steiner_kg_m2: f64) -> Result<f64> {
         return table.required_number(LinkField::Inertia.key(), NOT_NEGATIVE);
     };
     if table.has(LinkField::Inertia.key()) {
-        return Err(table.bad_key(JOINT_INERTIA, ModelReason::TwoInertias));
+        return Err(table.bad_key(
+            JOINT_INERTIA,
+            "the link has a moment of inertia about its centre of mass too",
+            "keep inertia_kg_m2 or joint_inertia_kg_m2",
+        ));
     }
     let inertia_kg_m2 = about_joint - steiner_kg_m2;
-    let reason = ModelReason::LittleInertia {
-        about_joint_kg_m2: about_joint,
-        steiner_kg_m2,
-    };
     if inertia_kg_m2 >= 0.0 {
         Ok(inertia_kg_m2)
     } else {
-        Err(table.bad(JOINT_INERTIA, reason))
+        Err(table.bad(
+            JOINT_INERTIA,
+            format!(
+                "{about_joint} kg m^2 about the joint is less than mass_kg com_m^2 = \
+                 {steiner_kg_m2:.4e} kg m^2"
+            ),
+            "mend one of the three; about the centre of mass it is inertia_kg_m2",
+        ))
     }
 }
 
@@ -187,10 +204,19 @@ fn joints(root: &Table, links: usize) -> Result<Vec<Joint>> {
     let tables = root.tables("joint")?;
     let joints = tables.len();
     if let Some(extra) = tables.get(links) {
-        return Err(extra.bad_table(ModelReason::ExtraJoint { links }));
+        return Err(extra.bad_table(
+            format!(
+                "[[joint]] {} is one joint too many for {links} link(s)",
+                links + 1
+            ),
+            "every link follows one joint: add a `[[link]]` or remove the joint",
+        ));
     }
     if joints < links {
-        return Err(root.bad_table(ModelReason::MissingJoint { links, joints }));
+        return Err(root.bad_table(
+            format!("the file has {links} link(s) but {joints} joint(s)"),
+            "every link follows one joint: add a `[[joint]]` for each",
+        ));
     }
     let joints = tables.iter().map(|table| {
         let axis = table.choice("axis", &AXES)?.unwrap_or(Axis::Hinge);

@@ -1,7 +1,7 @@
 mod refusals;
 
 use super::*;
-use crate::model::{ParameterPath, PathReason, TomlReason};
+use crate::model::ParameterPath;
 use proptest::prelude::*;
 
 const GOOD: &str = include_str!("../testdata/full.toml");
@@ -76,25 +76,32 @@ fn what_is_left_out_takes_its_default() {
 }
 
 #[test]
-fn a_reason_can_be_matched_on() {
-    let reason = |this: &str, that: &str| parse(&GOOD.replacen(this, that, 1)).unwrap_err();
-    let error = reason("mass_kg = 0.2", "mass_kg = -1");
-    let limits = Limits::above(0.0, 1e3);
-    let (key, value) = ("mass_kg".to_string(), -1.0);
-    let out_of_range = TomlReason::OutOfRange { key, value, limits };
-    assert_eq!(error.reason::<TomlReason>(), Some(&out_of_range));
-    assert_eq!(error.reason::<ModelReason>(), None);
-    let error = reason("joint = 2\ndelay", "joint = 1\ndelay");
-    let unsuited = ModelReason::UnsuitedJoint {
-        id: "delay",
-        wanted: "driven",
-        joint: 0,
-        drive: "passive",
-    };
-    assert_eq!(error.reason(), Some(&unsuited));
-    let error = reason("link1.inertia_kg_m2", "mass_kg");
-    let text = "mass_kg".to_string();
-    assert_eq!(error.reason(), Some(&PathReason::NoParameter { text }));
+fn an_error_says_place_what_was_found_and_the_remedy() {
+    for (this, that, said, remedy) in [
+        (
+            "mass_kg = 0.2",
+            "mass_kg = -1",
+            "rig.toml:12:11: `mass_kg` = -1 is impossible",
+            "give a number above 0, up to 1000",
+        ),
+        (
+            "joint = 2\ndelay",
+            "joint = 1\ndelay",
+            "rig.toml:37:9: `delay` acts on driven joints only, and joint 1 is `passive`",
+            "name a driven joint, or another effect",
+        ),
+        (
+            "link1.inertia_kg_m2",
+            "mass_kg",
+            "rig.toml:44:9: `mass_kg` names no parameter",
+            "write it as `link1.mass_kg`, `joint1.gain_per_rad` or `coulomb@1.torque_nm`",
+        ),
+    ] {
+        let error = parse(&GOOD.replacen(this, that, 1)).unwrap_err();
+        assert!(matches!(error, crate::error::Error::Data { .. }));
+        assert_eq!(error.to_string(), said);
+        assert_eq!(error.remedy().as_deref(), Some(remedy));
+    }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! `[uncertainty]`: what is known beforehand of values that may still be off.
 
-use super::fit::value_at;
+use super::fit::{infinite, twice, value_at};
 use crate::error::Result;
 use crate::model::limits::Limits;
 use crate::model::reader::Table;
-use crate::model::{Model, ModelReason, ParameterPath, UncertainValue};
+use crate::model::{Model, ParameterPath, UncertainValue};
 
 /// Below a thousandth nothing moves, and beyond its own size nothing is known.
 const UNCERTAINTY: Limits = Limits::within(1e-6, 1.0);
@@ -24,16 +24,19 @@ pub(super) fn read(root: &Table, model: &Model) -> Result<Vec<UncertainValue>> {
     let mut uncertain: Vec<UncertainValue> = Vec::new();
     for key in section.keys().into_iter().filter(|key| *key != TYPICAL) {
         let (path, value) = value_at(&section, key, section.key_span(key), model)?;
-        let name = key.to_string();
         let is_link_or_joint = !matches!(path, ParameterPath::Effect { .. });
         if !value.is_finite() {
-            return Err(section.bad(key, ModelReason::FreeInfinite { path: name }));
+            return Err(infinite(key).at(section.place_of(key)));
         }
         if uncertain.iter().any(|known| known.path == path) {
-            return Err(section.bad_key(key, ModelReason::FreeTwice { path: name }));
+            return Err(twice(key).at(section.place_of_key(key)));
         }
         if is_link_or_joint && model.free.contains(&path) {
-            return Err(section.bad_key(key, ModelReason::FreeAndUncertain { path: name }));
+            return Err(section.bad_key(
+                key,
+                format!("`{key}` is free, and so it can have no uncertainty"),
+                "free is what is not known beforehand: keep it under `[fit] free`, or here",
+            ));
         }
         uncertain.push(one(&section, key, path, value)?);
     }

@@ -1,25 +1,26 @@
 //! Where the meshes lie that a robot's file names.
 
 use super::mesh::Mesh;
-use super::mesh_error::{MOST_MB, MeshError};
 use super::stl::read_stl;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
+/// Most bytes of a mesh's file, MB.
+const MOST_MB: u64 = 64;
 /// Addresses of ROS and Gazebo packages.
 const PACKAGES: [&str; 2] = ["package://", "model://"];
 
-/// The mesh of a file, as it is written there.
+/// The mesh of a file, as it is written there, or why it cannot be drawn.
 ///
 /// # Errors
 /// No file, one of another format or too large, and what [`read_stl`] refuses.
-pub(super) fn mesh(file: &Path) -> Result<Mesh, MeshError> {
+pub(super) fn mesh(file: &Path) -> Result<Mesh, String> {
     let ending = file.extension().unwrap_or_default();
     if !ending.eq_ignore_ascii_case("stl") {
-        return Err(MeshError::Format);
+        return Err("only STL is read".into());
     }
-    let unread = |error: std::io::Error| MeshError::Unread(error.to_string());
+    let unread = |error: std::io::Error| format!("cannot be read: {error}");
     let mut bytes = Vec::new();
     let file = File::open(file).map_err(unread)?;
     let most = MOST_MB * 1_000_000;
@@ -27,7 +28,7 @@ pub(super) fn mesh(file: &Path) -> Result<Mesh, MeshError> {
         .read_to_end(&mut bytes)
         .map_err(unread)?;
     if bytes.len() as u64 > most {
-        return Err(MeshError::TooLarge);
+        return Err(format!("larger than {MOST_MB} MB"));
     }
     read_stl(&bytes)
 }

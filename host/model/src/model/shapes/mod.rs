@@ -5,7 +5,6 @@
 mod drawn;
 mod find;
 mod mesh;
-mod mesh_error;
 mod mjcf;
 mod stl;
 #[cfg(test)]
@@ -14,7 +13,6 @@ mod urdf;
 
 pub use super::import::Solid;
 pub use mesh::Mesh;
-pub use mesh_error::{MOST_MB, MeshError};
 pub use stl::read_stl;
 
 use super::Robot;
@@ -175,7 +173,7 @@ fn shapes_of(root: Element, tree: &RobotTree) -> Result<Vec<Vec<Described>>> {
 struct Reader<'a> {
     robot: &'a Path,
     /// Meshes that were read, by their files.
-    numbers: HashMap<PathBuf, std::result::Result<usize, MeshError>>,
+    numbers: HashMap<PathBuf, std::result::Result<usize, String>>,
     found: RobotShapes,
 }
 
@@ -227,14 +225,14 @@ impl Reader<'_> {
                     pose: stands * pose,
                     form,
                 }),
-                Ok((_, Err((mesh, error)))) => lacking.push((Some(mesh), error.to_string())),
+                Ok((_, Err((mesh, why)))) => lacking.push((Some(mesh), why)),
                 Err(error) => lacking.push((None, error.to_string())),
             }
         }
         lacking
     }
 
-    fn form(&mut self, shape: &DrawnShape) -> std::result::Result<ShapeForm, (String, MeshError)> {
+    fn form(&mut self, shape: &DrawnShape) -> std::result::Result<ShapeForm, (String, String)> {
         match shape {
             DrawnShape::Solid(solid) => Ok(ShapeForm::Solid(*solid)),
             DrawnShape::Mesh { name, scale } => {
@@ -248,8 +246,8 @@ impl Reader<'_> {
     }
 
     /// The number of a mesh, which is read when it is first named.
-    fn mesh(&mut self, name: &str) -> std::result::Result<usize, MeshError> {
-        let file = find::file(name, self.robot).ok_or(MeshError::Missing)?;
+    fn mesh(&mut self, name: &str) -> std::result::Result<usize, String> {
+        let file = find::file(name, self.robot).ok_or("no such file")?;
         if let Some(known) = self.numbers.get(&file) {
             return known.clone();
         }

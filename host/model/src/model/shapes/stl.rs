@@ -5,7 +5,6 @@
 //! file has `facet`, `outer loop`, three times `vertex x y z`, `endloop`, `endfacet`.
 
 use super::mesh::Mesh;
-use super::mesh_error::MeshError;
 
 const HEADER: usize = 80;
 const TRIANGLE: usize = 50;
@@ -19,7 +18,7 @@ const OTHER_WORDS: [&str; 6] = ["solid", "facet", "outer", "endloop", "endfacet"
 /// # Errors
 /// Bytes that are no STL, fewer or more of them than the number of triangles asks for, corners that
 /// are no numbers.
-pub fn read_stl(bytes: &[u8]) -> Result<Mesh, MeshError> {
+pub fn read_stl(bytes: &[u8]) -> Result<Mesh, String> {
     let promised = bytes
         .get(HEADER..HEADER + 4)
         .map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
@@ -29,13 +28,13 @@ pub fn read_stl(bytes: &[u8]) -> Result<Mesh, MeshError> {
     if !is_whole && bytes.trim_ascii_start().starts_with(b"solid") {
         return ascii(bytes);
     }
-    let promised = promised.ok_or(MeshError::NoStl)?;
+    let promised = promised.ok_or("no STL")?;
     if !is_whole {
-        return Err(MeshError::Count {
-            promised,
-            found: body.len() / TRIANGLE,
-            more_bytes: body.len() % TRIANGLE,
-        });
+        return Err(format!(
+            "says {promised} triangles and holds {} and {} bytes",
+            body.len() / TRIANGLE,
+            body.len() % TRIANGLE
+        ));
     }
     let triangles = body.chunks_exact(TRIANGLE).map(|triangle| {
         std::array::from_fn(|corner| {
@@ -49,13 +48,10 @@ pub fn read_stl(bytes: &[u8]) -> Result<Mesh, MeshError> {
     made(triangles.collect())
 }
 
-fn ascii(bytes: &[u8]) -> Result<Mesh, MeshError> {
+fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
     let (mut triangles, mut corners) = (Vec::new(), Vec::new());
     for (line, text) in (1..).zip(bytes.split(|byte| *byte == b'\n')) {
-        let wrong = |what: &str| MeshError::Line {
-            line,
-            what: what.to_string(),
-        };
+        let wrong = |what: &str| format!("line {line}: {what}");
         let text = String::from_utf8_lossy(text);
         let mut words = text.split_whitespace();
         match words.next() {
@@ -83,20 +79,20 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, MeshError> {
     if corners.is_empty() {
         made(triangles)
     } else {
-        Err(MeshError::EndsInFacet)
+        Err("ends within a facet".into())
     }
 }
 
 /// The mesh of triangles that are real.
-fn made(triangles: Vec<[[f32; 3]; 3]>) -> Result<Mesh, MeshError> {
+fn made(triangles: Vec<[[f32; 3]; 3]>) -> Result<Mesh, String> {
     let is_far = |value: &f32| !value.is_finite() || value.abs() > FARTHEST;
     let wrong = |triangle: &[[f32; 3]; 3]| triangle.as_flattened().iter().any(is_far);
     if let Some(at) = triangles.iter().position(wrong) {
-        return Err(MeshError::Corner { triangle: at + 1 });
+        return Err(format!("a corner of triangle {} is no place", at + 1));
     }
     let mesh = Mesh::of(triangles);
     if mesh.triangles.is_empty() {
-        Err(MeshError::Empty)
+        Err("has no triangle".into())
     } else {
         Ok(mesh)
     }

@@ -6,14 +6,13 @@
 
 mod law;
 mod program;
-mod reason;
 mod syntax;
 
 pub use law::MOST_VALUES;
-pub use reason::ExpressionReason;
 pub use syntax::{CONSTANTS, FUNCTIONS, Misplaced, VARIABLES};
 
 use super::{Effect, EffectInfo, JointState, Needs, OnSlide, Parameter, Scope, Site};
+use crate::error::Problem;
 use law::ExpressionLaw;
 use program::Program;
 use std::sync::{LazyLock, RwLock};
@@ -78,9 +77,9 @@ pub struct LawDefinition {
 #[derive(Debug, Clone, PartialEq)]
 pub enum DefinitionFault {
     /// The name, or the number of parameters or laws.
-    Name(ExpressionReason),
+    Name(Problem),
     /// The parameter of this index.
-    Parameter(usize, ExpressionReason),
+    Parameter(usize, Problem),
     /// The expression, at one of its characters.
     Expression(Misplaced),
 }
@@ -103,8 +102,10 @@ pub fn effect(definition: &LawDefinition) -> Result<Effect, DefinitionFault> {
         return Ok(effect);
     }
     if laws.len() >= MOST_LAWS {
-        let reason = ExpressionReason::TooManyLaws { most: MOST_LAWS };
-        return Err(DefinitionFault::Name(reason));
+        return Err(DefinitionFault::Name(Problem::new(
+            format!("more than {MOST_LAWS} different laws in one run"),
+            "start the program again",
+        )));
     }
     let effect = compiled(definition)?;
     laws.push((definition.clone(), effect));
@@ -152,24 +153,31 @@ fn names(definition: &LawDefinition) -> Result<(), DefinitionFault> {
             .is_some_and(|first| first.is_ascii_lowercase())
             && letters.all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
     };
-    let name = definition.name.clone();
-    if !is_name(&name) {
-        return Err(DefinitionFault::Name(ExpressionReason::NoName { name }));
+    let no_name = |name: &str| {
+        Problem::new(
+            format!("`{name}` is no name"),
+            "a name is small letters, digits and _, a letter first",
+        )
+    };
+    let taken =
+        |name: &str| Problem::new(format!("the name `{name}` is taken"), "choose another name");
+    let name = &definition.name;
+    if !is_name(name) {
+        return Err(DefinitionFault::Name(no_name(name)));
     }
     if super::EFFECTS
         .iter()
         .chain(super::CONTROLS)
-        .any(|e| e.info().id == name)
+        .any(|e| e.info().id == *name)
     {
-        return Err(DefinitionFault::Name(ExpressionReason::NameTaken { name }));
+        return Err(DefinitionFault::Name(taken(name)));
     }
     let count = definition.parameters.len();
     if count > MOST_VALUES {
-        let most = MOST_VALUES;
-        return Err(DefinitionFault::Name(ExpressionReason::TooMany {
-            count,
-            most,
-        }));
+        return Err(DefinitionFault::Name(Problem::new(
+            format!("{count} parameters, and an effect has at most {MOST_VALUES}"),
+            "write the law as several effects",
+        )));
     }
     let reserved = |key: &str| {
         let keys = ["kind", "joint", "fitted"]
@@ -180,15 +188,15 @@ fn names(definition: &LawDefinition) -> Result<(), DefinitionFault> {
             .any(|known| known == key)
     };
     for (index, parameter) in definition.parameters.iter().enumerate() {
-        let name = parameter.key.clone();
+        let name = &parameter.key;
         let twice = definition.parameters[..index]
             .iter()
-            .any(|other| other.key == name);
+            .any(|other| other.key == *name);
         let (low, high) = parameter.bounds;
-        let reason = if !is_name(&name) {
-            ExpressionReason::NoName { name }
-        } else if twice || reserved(&name) {
-            ExpressionReason::NameTaken { name }
+        let problem = if !is_name(name) {
+            no_name(name)
+        } else if twice || reserved(name) {
+            taken(name)
         } else if low < high
             && !parameter.starts.is_empty()
             && parameter
@@ -198,9 +206,12 @@ fn names(definition: &LawDefinition) -> Result<(), DefinitionFault> {
         {
             continue;
         } else {
-            ExpressionReason::Bounds
+            Problem::new(
+                "the bounds are not in order, or a start lies outside them",
+                "write low = LOWEST and high = HIGHEST with start between them",
+            )
         };
-        return Err(DefinitionFault::Parameter(index, reason));
+        return Err(DefinitionFault::Parameter(index, problem));
     }
     Ok(())
 }

@@ -4,7 +4,7 @@
 //! one argument. There is nothing else: no assignment, no loop, no access to anything.
 
 use super::program::{LawOperator, Node, Program, Slot};
-use super::reason::ExpressionReason;
+use crate::error::Problem;
 
 /// Variables of a law, and what they are.
 pub const VARIABLES: [(&str, &str); 7] = [
@@ -58,7 +58,7 @@ pub struct Misplaced {
     /// Where.
     pub at: usize,
     /// What.
-    pub reason: ExpressionReason,
+    pub problem: Problem,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -83,13 +83,47 @@ pub(super) fn parsed(law: &str, parameters: &[&str]) -> Result<Program, Misplace
     parser.whole()?;
     match parser.tokens.next() {
         None => Ok(parser.program),
-        Some((at, Token::Symbol(')'))) => misplaced(at, ExpressionReason::Unopened),
-        Some((at, _)) => misplaced(at, ExpressionReason::OperatorMissing),
+        Some((at, Token::Symbol(')'))) => {
+            misplaced(at, "this `)` closes nothing", "remove it, or open one")
+        }
+        Some((at, _)) => operator_missing(at),
     }
 }
 
-fn misplaced<T>(at: usize, reason: ExpressionReason) -> Result<T, Misplaced> {
-    Err(Misplaced { at, reason })
+fn misplaced<T>(
+    at: usize,
+    what: impl Into<String>,
+    remedy: impl Into<String>,
+) -> Result<T, Misplaced> {
+    let problem = Problem::new(what, remedy);
+    Err(Misplaced { at, problem })
+}
+
+/// Something is missing at `at`: `what` says that.
+fn missing<T>(at: usize, what: &str) -> Result<T, Misplaced> {
+    let remedy = "write it as -c * w * abs(w), with + - * / ^ and parentheses";
+    misplaced(at, format!("{what} is missing here"), remedy)
+}
+
+fn operand_missing<T>(at: usize) -> Result<T, Misplaced> {
+    missing(at, "a number, a name or `(`")
+}
+
+fn operator_missing<T>(at: usize) -> Result<T, Misplaced> {
+    missing(at, "an operator")
+}
+
+/// A law has nothing like `what` says.
+fn no_part<T>(at: usize, what: String) -> Result<T, Misplaced> {
+    misplaced(
+        at,
+        what,
+        "a law has numbers, names, + - * / ^ and parentheses",
+    )
+}
+
+fn too_long<T>(at: usize, what: String) -> Result<T, Misplaced> {
+    misplaced(at, what, "write it shorter, or as several effects")
 }
 
 /// How an operator joins what stands beside it, and how strongly; all go from the left.
@@ -143,17 +177,21 @@ impl Parser<'_> {
     /// A number, a name, a call, or something between parentheses.
     fn operand(&mut self) -> Result<usize, Misplaced> {
         let Some((at, token)) = self.tokens.next() else {
-            return misplaced(self.end, ExpressionReason::OperandMissing);
+            return operand_missing(self.end);
         };
         match token {
             Token::Number(value) => Ok(self.program.push(Node::Number(value))),
             Token::Name(name) => match FUNCTIONS.iter().find(|(known, _)| *known == name) {
                 Some((_, function)) => self.call(name, *function),
-                None => self.named(&name).map_err(|reason| Misplaced { at, reason }),
+                None => self.named(at, &name),
             },
             Token::Symbol('(') => self.between(at),
-            Token::Symbol('-') => misplaced(at, ExpressionReason::BareMinus),
-            Token::Symbol(_) => misplaced(at, ExpressionReason::OperandMissing),
+            Token::Symbol('-') => misplaced(
+                at,
+                "a minus sign right behind an operator",
+                "put it into parentheses, as in c * (-w)",
+            ),
+            Token::Symbol(_) => operand_missing(at),
         }
     }
 
@@ -163,8 +201,11 @@ impl Parser<'_> {
                 let argument = self.between(at)?;
                 Ok(self.program.push(Node::Call(function, argument)))
             }
-            Some((at, _)) => misplaced(at, ExpressionReason::NotCalled { name }),
-            None => misplaced(self.end, ExpressionReason::NotCalled { name }),
+            other => misplaced(
+                other.map_or(self.end, |(at, _)| at),
+                format!("`{name}` is a function and needs its argument in parentheses"),
+                format!("write {name}(w)"),
+            ),
         }
     }
 
@@ -172,19 +213,18 @@ impl Parser<'_> {
     fn between(&mut self, at: usize) -> Result<usize, Misplaced> {
         self.open += 1;
         if self.open > DEEPEST {
-            return misplaced(at, ExpressionReason::TooDeep);
+            return too_long(at, format!("parentheses are more than {DEEPEST} deep"));
         }
         let inner = self.whole()?;
         self.open -= 1;
         match self.tokens.next() {
             Some((_, Token::Symbol(')'))) => Ok(inner),
-            Some((at, _)) => misplaced(at, ExpressionReason::OperatorMissing),
-            None => misplaced(at, ExpressionReason::Unclosed),
+            Some((at, _)) => operator_missing(at),
+            None => misplaced(at, "this `(` is never closed", "close it, or remove it"),
         }
     }
 
-    fn named(&mut self, name: &str) -> Result<usize, ExpressionReason> {
-        let of_value = |index: usize| Node::Slot(Slot::Value(index));
+    fn named(&mut self, at: usize, name: &str) -> Result<usize, Misplaced> {
         let node = match name {
             "q" => Node::Slot(Slot::Angle),
             "w" => Node::Slot(Slot::Speed),
@@ -195,29 +235,32 @@ impl Parser<'_> {
             "time" => Node::Slot(Slot::Time),
             _ => match CONSTANTS.iter().find(|(known, _)| *known == name) {
                 Some((_, value)) => Node::Number(*value),
-                None => {
-                    let place = self.parameters.iter().position(|known| *known == name);
-                    place
-                        .map(of_value)
-                        .ok_or_else(|| ExpressionReason::UnknownName {
-                            name: name.to_string(),
-                            known: self.parameters.iter().map(ToString::to_string).collect(),
-                        })?
-                }
+                None => match self.parameters.iter().position(|known| *known == name) {
+                    Some(index) => Node::Slot(Slot::Value(index)),
+                    None => return self.unknown(at, name),
+                },
             },
         };
         Ok(self.program.push(node))
+    }
+
+    fn unknown<T>(&self, at: usize, name: &str) -> Result<T, Misplaced> {
+        let variables = VARIABLES.map(|(name, _)| name).join(", ");
+        let functions = FUNCTIONS.map(|(name, _)| name).join(", ");
+        let known = self.parameters.join(", ");
+        misplaced(
+            at,
+            format!("unknown name `{name}`"),
+            format!("variables: {variables}; parameters: {known}; functions: {functions}; PI"),
+        )
     }
 }
 
 fn tokens(law: &str) -> Result<Vec<(usize, Token)>, Misplaced> {
     let characters: Vec<char> = law.chars().collect();
     if characters.len() > LONGEST {
-        let reason = ExpressionReason::TooLong;
-        return Err(Misplaced {
-            at: LONGEST,
-            reason,
-        });
+        let what = format!("the law is longer than {LONGEST} characters");
+        return too_long(LONGEST, what);
     }
     let run = |from: usize, belongs: &dyn Fn(usize) -> bool| {
         let end = (from..characters.len()).find(|&k| !belongs(k));
@@ -242,10 +285,7 @@ fn tokens(law: &str) -> Result<Vec<(usize, Token)>, Misplaced> {
             let text: String = characters[at..end].iter().collect();
             match text.parse::<f64>() {
                 Ok(value) if value.is_finite() => tokens.push((at, Token::Number(value))),
-                _ => {
-                    let reason = ExpressionReason::NoNumber { text };
-                    return Err(Misplaced { at, reason });
-                }
+                _ => return no_part(at, format!("`{text}` is no number")),
             }
             end
         } else if here.is_ascii_alphabetic() || here == '_' {
@@ -258,8 +298,7 @@ fn tokens(law: &str) -> Result<Vec<(usize, Token)>, Misplaced> {
             tokens.push((at, Token::Symbol(here)));
             at + 1
         } else {
-            let reason = ExpressionReason::UnknownCharacter { found: here };
-            return Err(Misplaced { at, reason });
+            return no_part(at, format!("`{here}` is no part of a law"));
         };
         at = end;
     }
@@ -272,29 +311,34 @@ mod tests {
 
     #[test]
     fn what_is_wrong_has_its_place() {
-        use ExpressionReason as R;
+        let (operand, operator) = (
+            "a number, a name or `(` is missing here",
+            "an operator is missing here",
+        );
         for (law, at, what) in [
-            ("", 0, R::OperandMissing),
-            ("-c * ", 5, R::OperandMissing),
-            ("c w", 2, R::OperatorMissing),
-            ("c * (w + 1", 4, R::Unclosed),
-            ("c * w)", 5, R::Unopened),
-            ("c * -w", 4, R::BareMinus),
-            ("c; w", 1, R::UnknownCharacter { found: ';' }),
+            ("", 0, operand),
+            ("-c * ", 5, operand),
+            ("c w", 2, operator),
+            ("c * (w + 1", 4, "this `(` is never closed"),
+            ("c * w)", 5, "this `)` closes nothing"),
+            ("c * -w", 4, "a minus sign right behind an operator"),
+            ("c; w", 1, "`;` is no part of a law"),
+            ("1.2.3 * w", 0, "`1.2.3` is no number"),
             (
-                "1.2.3 * w",
-                0,
-                R::NoNumber {
-                    text: "1.2.3".into(),
-                },
+                "abs * w",
+                4,
+                "`abs` is a function and needs its argument in parentheses",
             ),
-            ("abs * w", 4, R::NotCalled { name: "abs".into() }),
-            ("c * abs", 7, R::NotCalled { name: "abs".into() }),
-            ("(c w)", 3, R::OperatorMissing),
-            ("()", 1, R::OperandMissing),
+            (
+                "c * abs",
+                7,
+                "`abs` is a function and needs its argument in parentheses",
+            ),
+            ("(c w)", 3, operator),
+            ("()", 1, operand),
         ] {
             let found = parsed(law, &["c"]).unwrap_err();
-            assert_eq!(found, Misplaced { at, reason: what }, "{law}");
+            assert_eq!((found.at, &*found.problem.what), (at, what), "{law}");
         }
         let unknown = parsed("-c * v", &["c"]).unwrap_err();
         assert_eq!(unknown.at, 5);

@@ -136,17 +136,21 @@ fn names_and_bounds_are_judged() {
         change(&mut wrong);
         effect(&wrong).unwrap_err()
     };
-    let taken = |name: &str| ExpressionReason::NameTaken { name: name.into() };
+    let taken =
+        |name: &str| Problem::new(format!("the name `{name}` is taken"), "choose another name");
     assert_eq!(
         fault(&|d| d.name = "coulomb".into()),
         DefinitionFault::Name(taken("coulomb"))
     );
     let found = fault(&|d| d.parameters[1].key = "w".into());
     assert_eq!(found, DefinitionFault::Parameter(1, taken("w")));
-    let found = fault(&|d| d.parameters[0].bounds = (1.0, 0.0));
+    let DefinitionFault::Parameter(0, found) = fault(&|d| d.parameters[0].bounds = (1.0, 0.0))
+    else {
+        panic!("not the first parameter's");
+    };
     assert_eq!(
-        found,
-        DefinitionFault::Parameter(0, ExpressionReason::Bounds)
+        found.what,
+        "the bounds are not in order, or a start lies outside them"
     );
     let found = fault(&|d| d.expression = "c * ".into());
     assert!(
