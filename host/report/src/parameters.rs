@@ -71,7 +71,6 @@ pub(crate) fn value_columns<'a, 'v: 'a>(names: &'a JointNames) -> Columns<'a, Ef
 
 impl<'a, T> Columns<'a, T> {
     /// And value, 95 % interval, to the decimals that it deserves, unit, and on pages a picture.
-    #[must_use]
     pub fn interval(self, fitted: impl Fn(&T) -> &FittedValue + Copy + 'a) -> Self {
         let ends = move |row: &T| {
             let fitted = fitted(row);
