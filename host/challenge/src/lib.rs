@@ -34,7 +34,7 @@ pub use bench::{
 pub use hidden_effect::{Hidden, KINDS, kind_named};
 pub use played::{ArmInputs, play};
 pub use readings::{READINGS, Readings, read_arm, read_pendulum};
-pub use score::{ChallengeScore, ScoredValue, score};
+pub use score::{ChallengeScore, ScoredValue, score, score_rows};
 pub use seal::{ChallengeAnswer, seal, unseal};
 pub use unknown_law::{UnknownLaw, unknown_laws};
 

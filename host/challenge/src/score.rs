@@ -3,6 +3,7 @@
 use super::seal::{ChallengeAnswer, unseal};
 use handstand_model::error::{Error, Place, Result};
 use handstand_model::model::{EffectInstance, Model};
+use handstand_model::output::number::exact;
 use serde::Serialize;
 use std::path::Path;
 
@@ -66,6 +67,30 @@ pub fn score(
         error_rad: error(model)?,
         true_error_rad: error(&truth)?,
     })
+}
+
+/// A score as a table's rows: a header, then the hidden effect, its values and the error on the last
+/// log, mrad, each by the truth and by the model.
+pub fn score_rows<'a>(
+    hidden: Option<&str>,
+    added: &[String],
+    values: impl Iterator<Item = (&'a str, f64, Option<f64>)>,
+    errors_rad: [f64; 2],
+) -> Vec<Vec<String>> {
+    let nothing = || "nothing".to_string();
+    let hidden = hidden.map_or_else(nothing, str::to_string);
+    let added = Some(added.join(", ")).filter(|added| !added.is_empty());
+    let [truth, own] = errors_rad.map(|rad| exact(1e3 * rad));
+    let row = |what: &str, truth, own| vec![what.to_string(), truth, own];
+    let mut rows = vec![
+        row("", "True".to_string(), "Estimated".to_string()),
+        row("effect", hidden, added.unwrap_or_else(nothing)),
+    ];
+    rows.extend(values.map(|(key, truth, estimate)| {
+        row(key, exact(truth), estimate.map_or("-".to_string(), exact))
+    }));
+    rows.push(row("error on c.csv, mrad", truth, own));
+    rows
 }
 
 /// Effects of `model` that `base` has not.

@@ -23,7 +23,7 @@ pub use checked::{Agreement, CheckedNumber, check};
 pub use computed::{Computed, ServoFacts, Zeros};
 pub use figure::{Holds, PaperFigure};
 pub use findings::{Finding, findings};
-pub use page::html;
+pub use page::{follows, html, number_columns};
 pub use printed::{Printed, PrintedQuantity, printed};
 
 use handstand_control::{synth, sysid};

@@ -1,11 +1,12 @@
 //! The page: numbers, figures, findings.
 
 use super::findings::Finding;
-use super::{Agreement, CheckedNumber, Holds, PaperFigure, Reproduction};
-use crate::output::number::short;
+use super::{Agreement, CheckedNumber, Computed, Holds, PaperFigure, Reproduction};
 use crate::plot::Chart;
-use crate::report::page::{Section, document, table};
+use crate::report::page::{Section, document};
+use crate::report::table::{Columns, columns_of, page_table};
 use maud::{Markup, html as markup};
+use nalgebra::Complex;
 
 /// Size of a chart, px.
 const SIZE: (f64, f64) = (460.0, 250.0);
@@ -45,31 +46,12 @@ fn header(study: &Reproduction) -> Markup {
 }
 
 fn numbers(study: &Reproduction) -> Section {
-    let facts = &study.computed.servo_facts;
-    let headings = markup! {
-        th { "Where" } th { "Quantity" } th { "Unit" } th.number { "Stated" }
-        th.number { "Computed" } th { "Verdict" }
-    };
     let body = markup! {
-        (table(&headings, &markup! { @for row in &study.rows { (number(row)) } }))
+        (page_table(&study.rows, &number_columns()))
         h3 { "What follows without being printed" }
         ul {
-            @for zeros in &study.computed.zeros {
-                li {
-                    "Zeros from the torques to (q" (zeros.outputs[0]) ", q" (zeros.outputs[1])
-                    "): ±"
-                    (short(zeros.squared.abs().sqrt())) @if zeros.squared < 0.0 { " j" } " 1/s"
-                }
-            }
-            li { "Static gain of eq. (2): " (short(facts.gain)) }
-            @if let Some(pole) = facts.poles.first() {
-                li {
-                    "Poles of eq. (2): z = " (format!("{:.4} ± {:.4} j", pole.re, pole.im.abs()))
-                    ", |z| = " (format!("{:.4}", pole.norm()))
-                    ", that is " (short(facts.continuous.re)) " ± "
-                    (short(facts.continuous.im.abs())) " j 1/s; it settles to 2 % in "
-                    (short(facts.settling_s)) " s"
-                }
+            @for (what, value) in follows(&study.computed) {
+                li { (what) ": " (value.replace("+-", "±")) }
             }
         }
     };
@@ -84,17 +66,46 @@ fn numbers(study: &Reproduction) -> Section {
     }
 }
 
-fn number(row: &CheckedNumber) -> Markup {
-    markup! {
-        tr {
-            td { (row.printed.place) }
-            td { (row.printed.quantity.name()) }
-            td { (row.printed.quantity.unit()) }
-            td.number { (row.printed.text) }
-            td.number { (row.computed_text()) }
-            td { span class=(good(row.verdict == Agreement::Agrees)) { (row.verdict.to_string()) } }
-        }
-    }
+/// The columns of numbers printed and computed.
+pub fn number_columns<'a>() -> Columns<'a, CheckedNumber> {
+    columns_of::<CheckedNumber>()
+        .text("Where", |row| row.printed.place.to_string())
+        .text("Quantity", |row| row.printed.quantity.name())
+        .drawn("Unit", |row| markup! { (row.printed.quantity.unit()) })
+        .number("Stated", |row| row.printed.text.to_string())
+        .number("Computed", CheckedNumber::computed_text)
+        .text("Verdict", |row| row.verdict.to_string())
+        .judged(|row| row.verdict == Agreement::Agrees)
+}
+
+/// What follows from the numbers without being printed: what it is, and its value.
+pub fn follows(computed: &Computed) -> Vec<(String, String)> {
+    let zeros = computed.zeros.iter().map(|zeros| {
+        let [a, b] = zeros.outputs;
+        let j = if zeros.squared < 0.0 { " j" } else { "" };
+        let what = format!("zeros from the torques to (q{a}, q{b})");
+        (what, format!("+-{:.4}{j} 1/s", zeros.squared.abs().sqrt()))
+    });
+    let facts = &computed.servo_facts;
+    let poles = facts.poles.iter().filter(|pole| pole.im >= 0.0);
+    let poles = poles.map(|pole| {
+        let size = pole.norm();
+        let place = format!("z = {:.4} +- {:.4} j, |z| = {size:.4}", pole.re, pole.im);
+        ("servo, poles", place)
+    });
+    let Complex { re, im } = facts.continuous;
+    let gain = ("servo, static gain", format!("{:.4}", facts.gain));
+    let continuous = format!("{re:.2} +- {:.2} j 1/s", im.abs());
+    let ends = [
+        ("servo, poles in continuous time", continuous),
+        (
+            "servo, settles to 2 % in",
+            format!("{:.2} s", facts.settling_s),
+        ),
+    ];
+    let servo = std::iter::once(gain).chain(poles).chain(ends);
+    let servo = servo.map(|(what, value)| (what.to_string(), value));
+    zeros.chain(servo).collect()
 }
 
 fn figures(study: &Reproduction) -> Section {
@@ -148,29 +159,19 @@ fn drawn_chart(chart: &Chart) -> Markup {
 }
 
 fn findings(study: &Reproduction) -> Section {
-    let headings = markup! {
-        th { "" } th { "Found there" } th { "Here" } th { "Command" } th { "Verdict" }
-    };
-    let rows = markup! { @for row in &study.findings { (finding(row)) } };
+    let columns = columns_of::<Finding>()
+        .number("", |row| row.number.to_string())
+        .text("Found there", |row| row.found.to_string())
+        .text("Here", |row| row.said.clone())
+        .drawn("Command", |row| markup! { code { (row.command) } })
+        .text("Verdict", |row| row.holds.words().to_string())
+        .judged(|row| matches!(row.holds, Holds::Yes | Holds::ShownElsewhere));
     Section {
         id: "findings",
         title: "What the paper found",
         lead: "Everything it measured, simulated or left open, with the command that shows it \
                here.",
-        body: table(&headings, &rows),
-    }
-}
-
-fn finding(row: &Finding) -> Markup {
-    let shown = matches!(row.holds, Holds::Yes | Holds::ShownElsewhere);
-    markup! {
-        tr {
-            td.number { (row.number) }
-            td { (row.found) }
-            td { (row.said) }
-            td { code { (row.command) } }
-            td { span class=(good(shown)) { (row.holds.words()) } }
-        }
+        body: page_table(&study.findings, &columns),
     }
 }
 

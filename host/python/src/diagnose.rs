@@ -153,9 +153,8 @@ pub fn found(
 impl Diagnosis {
     /// `nominal`, `adequate`, `wrong_value`, `named`, `ambiguous`, `unexplained` or `unfit`.
     #[getter]
-    fn verdict(&self) -> String {
-        let name = serde_json::to_value(self.inner.verdict).unwrap_or_default();
-        name.as_str().unwrap_or_default().to_string()
+    fn verdict(&self) -> &'static str {
+        self.inner.verdict.name()
     }
 
     /// The effects of the best explanation, as `add` takes them.

@@ -1,11 +1,13 @@
 //! The explanations that were tried, with the evidence for and against each.
 
-use super::page::{Section, table};
+use super::page::Section;
+use super::table::{Columns, columns_of, page_table_with};
+use super::text::and_more;
 use super::words::{in_columns, in_milli, set_name, sorted};
 use super::{AFTER, BEFORE, Report};
-use crate::diagnose::words::{SHOWN, explained_by};
+use crate::diagnose::words::{SHOWN as RIVALS, explained_by};
 use crate::diagnose::{Alternative, Diagnosis, RuledOut};
-use crate::model::MeasuredSignal;
+use crate::model::{JointNames, MeasuredSignal};
 use crate::output::number::{NONE, mrad, short};
 use crate::plot::{Bar, largest};
 use maud::{Markup, html};
@@ -20,7 +22,8 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     }
     let body = html! {
         @if !diagnosis.alternatives.is_empty() {
-            (alternatives(&diagnosis.alternatives, diagnosis.error.quantity))
+            h3 { "These do as well: the data do not rule them out" }
+            ul { @for line in alternatives(diagnosis) { li { (line) } } }
         }
         @if !diagnosis.ruled_out.is_empty() { (tried(diagnosis)) }
     };
@@ -35,20 +38,24 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     })
 }
 
-fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Markup {
-    html! {
-        h3 { "These do as well: the data do not rule them out" }
-        ul { @for alternative in alternatives.iter().take(SHOWN) {
-            li {
-                b { (explained_by(&alternative.effects, &alternative.wrong_values)) }
-                ": error " (in_milli(alternative.error_rad, quantity))
-                @for fitted in alternative.effects.iter().flat_map(|effect| &effect.parameters) {
-                    span.note { "; " (fitted.key) " = " (fitted) }
-                }
-            }
-        }
-        @if alternatives.len() > SHOWN { li { "and " (alternatives.len() - SHOWN) " more" } } }
-    }
+/// The explanations that do as well, a line each.
+pub(crate) fn alternatives(diagnosis: &Diagnosis) -> Vec<String> {
+    let all = &diagnosis.alternatives;
+    let line = |alternative: &Alternative| {
+        let effects = alternative.effects.iter();
+        let values = effects.flat_map(|effect| &effect.parameters);
+        let wrong = alternative.wrong_values.iter().map(|wrong| &wrong.fitted);
+        let values = values.chain(wrong);
+        let values = values.map(|fitted| format!("{} = {fitted}", fitted.key));
+        format!(
+            "{}: {}; {}",
+            explained_by(&alternative.effects, &alternative.wrong_values),
+            in_milli(alternative.error_rad, diagnosis.error.quantity),
+            values.collect::<Vec<_>>().join(", ")
+        )
+    };
+    let lines = all.iter().take(RIVALS).map(line);
+    lines.chain(and_more(all.len(), RIVALS)).collect()
 }
 
 fn error(tried: &RuledOut) -> f64 {
@@ -59,8 +66,8 @@ fn error(tried: &RuledOut) -> f64 {
 fn tried(diagnosis: &Diagnosis) -> Markup {
     let errors = diagnosis.ruled_out.iter().map(error);
     let full = largest(errors.chain([diagnosis.error.after_rad]));
-    let as_good = sorted(&diagnosis.ruled_out, true);
-    let worse = sorted(&diagnosis.ruled_out, false);
+    let as_good = sorted(diagnosis, true);
+    let worse = sorted(diagnosis, false);
     html! {
         @if !as_good.is_empty() {
             h3 { "As good, not needed" }
@@ -96,17 +103,53 @@ fn folded(diagnosis: &Diagnosis, tried: &[&RuledOut], full: f64) -> Markup {
 }
 
 fn rows(diagnosis: &Diagnosis, tried: &[&RuledOut], full: f64, with_best: bool) -> Markup {
-    let chosen = diagnosis.error.after_rad;
-    let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
-    let headings = html! {
-        th { "Added to the model" } th.number { (fitted) } th.number { (held_out) }
-        th.wide { "Drawn" } th.number { "BIC change" } th { "Why not" }
+    let names = JointNames::default();
+    let best = best(diagnosis);
+    let is_best = |tried: &RuledOut| std::ptr::eq(tried, &best);
+    let bar = |tried: &RuledOut| match tried.held_out_error_rad {
+        _ if is_best(tried) => Bar::new(diagnosis.error.after_rad, full, AFTER),
+        held_out => Bar {
+            ghost: held_out.is_none().then_some(tried.training_error_rad),
+            mark: Some(diagnosis.error.after_rad),
+            ..Bar::new(held_out.unwrap_or(0.0), full, BEFORE)
+        },
     };
-    let rows = html! {
-        @if with_best { (best(diagnosis, full)) }
-        @for tried in tried { (row(tried, full, chosen)) }
-    };
-    html! { div.tried { (table(&headings, &rows)) } }
+    let picture = |tried: &RuledOut| bar(tried).draw();
+    let columns = tried_columns(
+        "Added to the model",
+        &names,
+        diagnosis.error.quantity,
+        picture,
+    );
+    let rows = with_best.then_some(&best).into_iter();
+    let rows = rows.chain(tried.iter().copied());
+    let class = |tried: &RuledOut| is_best(tried).then_some("best");
+    html! { div.tried { (page_table_with(rows, &columns, class)) } }
+}
+
+/// The columns of what was tried, under this title; joints are called as `names` has them, and pages
+/// draw the error.
+pub(crate) fn tried_columns<'a>(
+    title: &'a str,
+    names: &'a JointNames,
+    quantity: MeasuredSignal,
+    picture: impl Fn(&RuledOut) -> Markup + 'a,
+) -> Columns<'a, RuledOut> {
+    let [fitted, held_out] = in_columns(["Fitted", "Held out"], quantity);
+    columns_of::<RuledOut>()
+        .text(title, |tried| names.in_text(&tried.set.join(" + ")))
+        .drawn_as(|tried| {
+            let (name, ids) = (set_name(&tried.set), tried.set.join(" + "));
+            html! { (name) @if ids != name { br; code { (ids) } } }
+        })
+        .number(fitted, |tried| mrad(tried.training_error_rad))
+        .number(held_out, |tried| {
+            tried.held_out_error_rad.map_or(NONE.into(), mrad)
+        })
+        .drawn("Drawn", picture)
+        .class("wide")
+        .number("BIC", |tried| short(tried.bic_change))
+        .text("Why", |tried| names.in_text(&tried.why))
 }
 
 fn found(diagnosis: &Diagnosis) -> bool {
@@ -114,44 +157,14 @@ fn found(diagnosis: &Diagnosis) -> bool {
 }
 
 /// The chosen explanation, to compare with.
-fn best(diagnosis: &Diagnosis, full: f64) -> Markup {
-    let after = diagnosis.error.after_rad;
-    let (fitted, held_out) = if diagnosis.error.held_out {
-        (NONE.to_string(), mrad(after))
-    } else {
-        (mrad(after), NONE.to_string())
-    };
-    html! {
-        tr.best {
-            td { (explained_by(&diagnosis.effects, &diagnosis.wrong_values)) }
-            td.number { (fitted) }
-            td.number { (held_out) }
-            td.wide { (Bar::new(after, full, AFTER).draw()) }
-            td.number { (NONE) }
-            td { "best found" }
-        }
-    }
-}
-
-fn row(tried: &RuledOut, full: f64, chosen: f64) -> Markup {
-    let error = error(tried);
-    let (solid, ghost) = match tried.held_out_error_rad {
-        Some(_) => (error, None),
-        None => (0.0, Some(error)),
-    };
-    let bar = Bar {
-        ghost,
-        mark: Some(chosen),
-        ..Bar::new(solid, full, BEFORE)
-    };
-    html! {
-        tr {
-            td { (set_name(&tried.set)) br; code { (tried.set.join(" + ")) } }
-            td.number { (mrad(tried.training_error_rad)) }
-            td.number { (tried.held_out_error_rad.map_or(NONE.into(), mrad)) }
-            td.wide { (bar.draw()) }
-            td.number { (short(tried.bic_change)) }
-            td { (tried.why) }
-        }
+fn best(diagnosis: &Diagnosis) -> RuledOut {
+    let (after, held_out) = (diagnosis.error.after_rad, diagnosis.error.held_out);
+    RuledOut {
+        set: vec![explained_by(&diagnosis.effects, &diagnosis.wrong_values)],
+        training_error_rad: if held_out { f64::NAN } else { after },
+        held_out_error_rad: held_out.then_some(after),
+        bic_change: f64::NAN,
+        as_good: false,
+        why: "best found".to_string(),
     }
 }

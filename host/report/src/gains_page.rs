@@ -1,7 +1,9 @@
 //! Gains as a page: what the loop does, how robust it is, and from where it comes back.
 
+use super::margins::{MarginsPart, margins_parts};
 use super::page::{Section, document};
-use super::{margins_text, verification_text};
+use super::table::page_matrix;
+use super::verification_text;
 use crate::error::Result;
 use crate::model::Model;
 use crate::plot::{Chart, Curve, Tone};
@@ -215,13 +217,21 @@ fn robustness(report: &GainsReport<'_>) -> Result<Option<Section>> {
         "dB",
         curves,
     );
-    let text = margins_text(report.figures, report.design);
+    let parts = margins_parts(report.figures, report.design);
     Ok(Some(Section {
         id: "margins",
         title: "Margins and singular values",
         lead: "How much the linear loop may be wrong before it is unstable. A peak of S of 6 dB \
                leaves half of the distance to instability.",
-        body: html! { pre { (text.trim()) } (drawn(&chart)) },
+        body: html! {
+            @for part in &parts {
+                @match part {
+                    MarginsPart::Rows(rows) => (page_matrix(rows)),
+                    MarginsPart::Line(line) => p { (line) },
+                }
+            }
+            (drawn(&chart))
+        },
     }))
 }
 

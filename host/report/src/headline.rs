@@ -1,8 +1,8 @@
 //! The verdict in words and the error in one line.
 
 use super::command::with_commands;
-use super::words::{floor_interval, in_milli, measured_on, reduction, sentences, verdict_word};
-use super::{AFTER, BEFORE, FLOOR, Report, pooled};
+use super::words::{floor_interval, in_milli, measured_on, reduction, sentences};
+use super::{AFTER, BEFORE, FLOOR, Report};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::diagnose::words::headline;
@@ -14,7 +14,7 @@ use maud::{Markup, html};
 
 /// Top of the page.
 pub(super) fn header(report: &Report) -> Markup {
-    let verdict = report.diagnosis.as_ref().map(|d| verdict_word(d.verdict));
+    let verdict = report.diagnosis.as_ref().map(|d| d.verdict.name());
     html! {
         header class={ "verdict-" (verdict.unwrap_or("none")) } {
             p.title { (report.title) }
@@ -28,7 +28,7 @@ pub(super) fn header(report: &Report) -> Markup {
 
 fn diagnosed(diagnosis: &Diagnosis) -> Markup {
     html! {
-        p { span.badge { (verdict_word(diagnosis.verdict)) } }
+        p { span.badge { (diagnosis.verdict.name()) } }
         h1 { (headline(diagnosis)) }
         (error_line(diagnosis))
         @for sentence in sentences(diagnosis) { p { (sentence) } }
@@ -64,12 +64,12 @@ fn error_line(diagnosis: &Diagnosis) -> Markup {
 
 /// Without a diagnosis the figures are the models' own.
 fn compared(report: &Report) -> Markup {
-    let error = |comparison: &Comparison| pooled(comparison, |signal| signal.rms);
+    let error = |comparison: &Comparison| comparison.pooled_rms(|signal| signal.rms);
     let Some(before) = report.before().filter(|c| !c.signals.is_empty()) else {
         return html! { h1 { "Nothing was compared." } };
     };
     let quantity = before.quantity();
-    let floor = ("floor", FLOOR, pooled(before, |signal| signal.floor));
+    let floor = ("floor", FLOOR, before.pooled_rms(|signal| signal.floor));
     let first = (before.model.as_str(), BEFORE, error(before));
     match report.after() {
         Some(after) => {

@@ -25,6 +25,7 @@ mod refitted;
 mod remains;
 mod signatures;
 mod study_plots;
+pub mod table;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -41,7 +42,8 @@ pub use gains_page::{GainsReport, gains_page};
 pub use json::{diagnosis_json, discovery_json, gains_json, json};
 pub use log_check::{log_check_json, log_check_text};
 pub use margins::{
-    input_margins_text, is_low, margins_json, margins_text, place_margins_json, with_margins,
+    MarginsPart, input_margins_text, is_low, margins_json, margins_parts, margins_text,
+    place_margins_json, with_margins,
 };
 pub use outcomes::{outcomes_csv, outcomes_html, outcomes_text};
 pub use page::html;
@@ -64,7 +66,7 @@ use handstand_study as study;
 
 use handstand_sim::{compare, fitting};
 
-use crate::compare::{Comparison, SignalError};
+use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::motion::{Motion, Split};
 use crate::output::number::hex;
@@ -197,10 +199,4 @@ impl Report {
         let mut roles = logs.flat_map(|log| std::iter::repeat_n(log.held_out, named(log)));
         roles.nth(earlier)
     }
-}
-
-/// Root-mean-square over the joints, which share their samples.
-fn pooled(comparison: &Comparison, of: fn(&SignalError) -> f64) -> f64 {
-    let squares: f64 = comparison.pooled().map(|signal| of(signal).powi(2)).sum();
-    (squares / comparison.pooled().count() as f64).sqrt()
 }

@@ -1,6 +1,7 @@
 //! Margins and stiffness of a linear loop, in words and as JSON.
 
 use crate::synth::{Design, LoopFigures, LoopMargin, Margins, Peak, Signal, Stiffness, rows};
+use serde::Serialize;
 use serde_json::{Value, json};
 
 /// Less than this is warned of, dB and degrees.
@@ -17,20 +18,65 @@ pub fn is_low(margins: &Margins) -> bool {
     margins.disk.gain_db() < LOW.0 || margins.disk.phase_rad().to_degrees() < LOW.1
 }
 
+/// What is said of margins: a table whose first row has the headings, or a line.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum MarginsPart {
+    /// Cells of a table, row by row.
+    Rows(Vec<[String; 4]>),
+    /// A line of its own; an empty one keeps tables apart.
+    Line(String),
+}
+
 /// Lines for people.
 pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
-    let Some(LoopFigures { margins, stiffness }) = figures else {
-        return UNSTABLE.to_string();
-    };
-    let mut lines = table("Margins at the inputs", &margins.inputs, &design.inputs);
-    if let (Some(sensors), Some(estimation)) = (&margins.sensors, &design.estimator) {
-        lines.push(String::new());
-        lines.extend(table(
-            "Margins at the sensors",
-            sensors,
-            &estimation.outputs,
-        ));
+    in_lines(&margins_parts(figures, design))
+}
+
+/// Margins at the inputs of a loop in lines for people; `channels` are the inputs' names.
+pub fn input_margins_text(margins: Option<&Margins>, channels: &[&str]) -> String {
+    match margins {
+        Some(margins) => in_lines(&parts_of("Margins at the inputs", margins, channels)),
+        None => UNSTABLE.to_string(),
     }
+}
+
+fn in_lines(parts: &[MarginsPart]) -> String {
+    let lines = parts.iter().map(|part| match part {
+        MarginsPart::Rows(rows) => aligned(rows),
+        MarginsPart::Line(line) => line.clone(),
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// A table's rows, those below the headings indented.
+fn aligned(rows: &[[String; 4]]) -> String {
+    let longest = rows.iter().skip(1).map(|row| row[0].chars().count() + 3);
+    let width = longest.fold(24, usize::max);
+    let lines = rows.iter().enumerate();
+    let lines = lines.map(|(index, [name, gain, phase, delay])| {
+        let indent = if index > 0 { "  " } else { "" };
+        let name = format!("{indent}{name}");
+        format!("{name:<width$}{gain:<18}{phase:<12}{delay}")
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Margins and stiffness for every writer.
+pub fn margins_parts(figures: Option<&LoopFigures>, design: &Design) -> Vec<MarginsPart> {
+    let Some(LoopFigures { margins, stiffness }) = figures else {
+        return vec![MarginsPart::Line(UNSTABLE.to_string())];
+    };
+    let of = |title: &str, margins: &Margins, channels: &[Signal]| {
+        let names: Vec<&str> = channels.iter().map(|it| it.name.as_str()).collect();
+        parts_of(title, margins, &names)
+    };
+    let mut parts = of("Margins at the inputs", &margins.inputs, &design.inputs);
+    if let (Some(sensors), Some(estimation)) = (&margins.sensors, &design.estimator) {
+        parts.push(MarginsPart::Line(String::new()));
+        parts.extend(of("Margins at the sensors", sensors, &estimation.outputs));
+    }
+    let mut lines = Vec::new();
     if let Some(supply) = &margins.supply {
         let above = if supply.highest_v.is_finite() {
             format!("to {:.2} V", supply.highest_v)
@@ -58,15 +104,8 @@ pub fn margins_text(figures: Option<&LoopFigures>, design: &Design) -> String {
             LOW.0, LOW.1
         ));
     }
-    lines.join("\n")
-}
-
-/// Margins at the inputs of a loop in lines for people; `channels` are the inputs' names.
-pub fn input_margins_text(margins: Option<&Margins>, channels: &[&str]) -> String {
-    match margins {
-        Some(margins) => lines_of("Margins at the inputs", margins, channels).join("\n"),
-        None => UNSTABLE.to_string(),
-    }
+    parts.extend(lines.into_iter().map(MarginsPart::Line));
+    parts
 }
 
 /// Margins of one place of a loop; `null` of a loop that is not stable.
@@ -74,61 +113,47 @@ pub fn place_margins_json(margins: Option<&Margins>) -> Value {
     margins.map_or(Value::Null, of_place)
 }
 
-fn table(title: &str, margins: &Margins, channels: &[Signal]) -> Vec<String> {
-    let names: Vec<&str> = channels.iter().map(|it| it.name.as_str()).collect();
-    lines_of(title, margins, &names)
-}
-
 /// Gain, phase and delay of all alike and of each alone, the disk, the peaks.
-fn lines_of(title: &str, margins: &Margins, channels: &[&str]) -> Vec<String> {
-    let longest = channels.iter().map(|name| name.chars().count() + 7);
-    let width = longest.fold(22, usize::max);
-    let wider = width + 2;
-    let mut lines = vec![format!(
-        "{title:<wider$}gain              phase       delay"
-    )];
-    let mut put = |name: &str, of: &LoopMargin| {
-        let above = if of.gain[1].is_finite() {
-            format!("{:.3}", of.gain[1])
-        } else {
-            "any".to_string()
-        };
-        let gain = format!("{:.3} to {above}", of.gain[0]);
-        let or_any = |said: Option<String>| said.unwrap_or_else(|| "any".to_string());
-        let phase = or_any(
-            of.phase_rad
-                .map(|rad| format!("{:.1} deg", rad.to_degrees())),
-        );
-        let delay = or_any(of.delay_s.map(|s| format!("{:.1} ms", 1e3 * s)));
-        lines.push(format!("  {name:<width$}{gain:<18}{phase:<12}{delay}"));
+fn parts_of(title: &str, margins: &Margins, channels: &[&str]) -> Vec<MarginsPart> {
+    let or_any = |said: Option<String>| said.unwrap_or_else(|| "any".to_string());
+    let row = |name: String, of: &LoopMargin| {
+        let above = Some(of.gain[1]).filter(|above| above.is_finite());
+        let above = or_any(above.map(|above| format!("{above:.3}")));
+        let degrees = of.phase_rad.map(f64::to_degrees);
+        [
+            name,
+            format!("{:.3} to {above}", of.gain[0]),
+            or_any(degrees.map(|degrees| format!("{degrees:.1} deg"))),
+            or_any(of.delay_s.map(|s| format!("{:.1} ms", 1e3 * s))),
+        ]
     };
-    put("all alike", &margins.common);
+    let mut rows = vec![
+        [title, "gain", "phase", "delay"].map(str::to_string),
+        row("all alike".to_string(), &margins.common),
+    ];
     if channels.len() > 1 {
-        for (channel, single) in channels.iter().zip(&margins.single) {
-            put(&format!("{channel} alone"), single);
-        }
+        let single = channels.iter().zip(&margins.single);
+        rows.extend(single.map(|(channel, single)| row(format!("{channel} alone"), single)));
     }
     let disk = &margins.disk;
-    lines.push(format!(
-        "  {:<width$}{:<18}{:<12}disk margin {:.3} at {:.3} rad/s",
-        "each in its own way",
-        if disk.gain().is_finite() {
-            format!("±{:.1} dB", disk.gain_db())
-        } else {
-            "any".to_string()
-        },
+    let gain = Some(disk.gain_db()).filter(|_| disk.gain().is_finite());
+    rows.push([
+        "each in its own way".to_string(),
+        or_any(gain.map(|gain_db| format!("±{gain_db:.1} dB"))),
         format!("±{:.1} deg", disk.phase_rad().to_degrees()),
-        disk.alpha,
-        disk.frequency_rad_s,
-    ));
-    lines.push(format!(
+        format!(
+            "disk margin {:.3} at {:.3} rad/s",
+            disk.alpha, disk.frequency_rad_s
+        ),
+    ]);
+    let peaks = format!(
         "  Peaks: |S| {:.2} at {:.3} rad/s, |T| {:.2} at {:.3} rad/s",
         margins.sensitivity.value,
         margins.sensitivity.frequency_rad_s,
         margins.complementary.value,
         margins.complementary.frequency_rad_s,
-    ));
-    lines
+    );
+    vec![MarginsPart::Rows(rows), MarginsPart::Line(peaks)]
 }
 
 /// Rounded to two places; a zero has no sign for people.

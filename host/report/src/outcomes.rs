@@ -1,9 +1,10 @@
 //! Many logs and what each says of one model: as text, CSV and page.
 
-use super::page::{Section, document, table};
+use super::page::{Section, document};
+use super::table::{Columns, columns_of, csv_of, page_table, table_of};
 use crate::diagnose::{LogOutcome, OutcomeValue};
 use crate::output::number::{exact, mrad, short};
-use crate::output::table::{TableColumn, csv_of, or_empty, table_of, within_width};
+use crate::output::table::{or_empty, within_width};
 use crate::plot::{Chart, Curve, Tone};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
@@ -29,20 +30,19 @@ pub fn outcomes_csv(outcomes: &[LogOutcome]) -> String {
         })
         .collect();
     type OutcomeRow<'a> = (&'a LogOutcome, Option<&'a OutcomeValue>);
-    let columns: &[TableColumn<OutcomeRow>] = &[
-        ("log", &|(outcome, _)| outcome.key.log.replace(',', "_")),
-        ("verdict", &|(outcome, _)| outcome.verdict.clone()),
-        ("effects", &|(outcome, _)| outcome.effects.join("+")),
-        ("before_rad", &|(outcome, _)| or_empty(outcome.before_rad)),
-        ("after_rad", &|(outcome, _)| or_empty(outcome.after_rad)),
-        ("floor_rad", &|(outcome, _)| or_empty(outcome.floor_rad)),
-        ("path", &|(_, value)| or_empty(value.map(|v| &v.path))),
-        ("unit", &|(_, value)| or_empty(value.map(|v| &v.unit))),
-        ("value", &|(_, value)| or_empty(value.map(|v| v.value))),
-        ("low", &|(_, value)| or_empty(value.and_then(|v| v.low))),
-        ("high", &|(_, value)| or_empty(value.and_then(|v| v.high))),
-    ];
-    csv_of(&rows, columns)
+    let columns = columns_of::<OutcomeRow>()
+        .text("log", |(outcome, _)| outcome.key.log.replace(',', "_"))
+        .text("verdict", |(outcome, _)| outcome.verdict.clone())
+        .text("effects", |(outcome, _)| outcome.effects.join("+"))
+        .text("before_rad", |(outcome, _)| or_empty(outcome.before_rad))
+        .text("after_rad", |(outcome, _)| or_empty(outcome.after_rad))
+        .text("floor_rad", |(outcome, _)| or_empty(outcome.floor_rad))
+        .text("path", |(_, value)| or_empty(value.map(|v| &v.path)))
+        .text("unit", |(_, value)| or_empty(value.map(|v| &v.unit)))
+        .text("value", |(_, value)| or_empty(value.map(|v| v.value)))
+        .text("low", |(_, value)| or_empty(value.and_then(|v| v.low)))
+        .text("high", |(_, value)| or_empty(value.and_then(|v| v.high)));
+    csv_of(&rows, &columns)
 }
 
 /// A page: the table, then how each value goes from log to log.
@@ -91,20 +91,17 @@ fn counted(outcomes: &[LogOutcome]) -> Vec<String> {
     vec![format!("{logs}: {}.", counts.join(", "))]
 }
 
-fn columns<'a>() -> [TableColumn<'a, LogOutcome>; 6] {
-    [
-        ("Log", &|o| o.key.log.clone()),
-        ("Verdict", &|o| o.verdict.clone()),
-        ("Effects", &|o| o.effects.join(", ")),
-        ("Values", &|o| {
+fn columns<'a>() -> Columns<'a, LogOutcome> {
+    columns_of::<LogOutcome>()
+        .text("Log", |o| o.key.log.clone())
+        .text("Verdict", |o| o.verdict.clone())
+        .text("Effects", |o| o.effects.join(", "))
+        .text("Values", |o| {
             let values: Vec<String> = o.values.iter().map(in_words).collect();
             values.join("\n")
-        }),
-        ("Before, mrad", &|o| {
-            o.before_rad.map_or(String::new(), mrad)
-        }),
-        ("After, mrad", &|o| o.after_rad.map_or(String::new(), mrad)),
-    ]
+        })
+        .number("Before, mrad", |o| o.before_rad.map_or(String::new(), mrad))
+        .number("After, mrad", |o| o.after_rad.map_or(String::new(), mrad))
 }
 
 fn in_words(value: &OutcomeValue) -> String {
@@ -121,19 +118,8 @@ fn in_words(value: &OutcomeValue) -> String {
 }
 
 fn all(outcomes: &[LogOutcome]) -> Markup {
-    let columns = columns();
-    let heads = html! { @for (head, _) in &columns { th { (head) } } };
-    let rows = html! {
-        @for outcome in outcomes {
-            tr {
-                @for (_, cell) in &columns {
-                    td { @for line in cell(outcome).lines() { (line) br; } }
-                }
-            }
-        }
-    };
     html! {
-        (table(&heads, &rows))
+        (page_table(outcomes, &columns()))
         @for outcome in outcomes.iter().filter(|o| !o.is_usable()) {
             p { strong { (outcome.key.log) } ": " (outcome.said) }
         }

@@ -88,8 +88,3 @@ pub(crate) fn self_contained(title: &str, style: &Markup, body: &Markup) -> Stri
     };
     page.into_string()
 }
-
-/// A table under these headings (`th` elements); it scrolls sideways where it is too wide.
-pub fn table(headings: &Markup, rows: &Markup) -> Markup {
-    html! { div.scroll tabindex="0" { table { thead { tr { (headings) } } tbody { (rows) } } } }
-}

@@ -1,11 +1,12 @@
 //! Fitted values with their intervals.
 
 use super::Report;
-use super::page::{Section, table};
-use crate::diagnose::Diagnosis;
-use crate::diagnose::names::effect_name;
-use crate::effects::parameter;
+use super::page::Section;
+use super::table::{Columns, columns_of, page_table};
+use crate::diagnose::{Diagnosis, FittedEffect};
+use crate::effects::{self, parameter};
 use crate::fitting::FittedValue;
+use crate::model::JointNames;
 use crate::output::number::{interval, short, unit};
 use crate::plot;
 use maud::{Markup, html};
@@ -35,36 +36,71 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 }
 
 fn values(diagnosis: &Diagnosis) -> Markup {
-    let headings = html! {
-        th { "Of" } th { "Parameter" } th.number { "Value" } th.number { "95 % interval" }
-        th { "Unit" } th { "Note" }
-    };
-    let rows = html! {
-        @for effect in &diagnosis.effects {
-            @for fitted in &effect.parameters {
-                @let vanishes_at = parameter(&effect.kind, &fitted.key).and_then(|known| known.off);
-                (row(&effect_name(effect), fitted, vanishes_at))
-            }
-        }
-        @for fitted in &diagnosis.base { (row("model, refitted", fitted, None)) }
-    };
-    table(&headings, &rows)
+    let names = JointNames::default();
+    let base = diagnosis.base.iter().map(|fitted| (None, fitted));
+    let values: Vec<EffectValue> = effect_values(&diagnosis.effects).chain(base).collect();
+    page_table(&values, &value_columns(&names))
 }
 
-fn row(owner: &str, fitted: &FittedValue, off: Option<f64>) -> Markup {
-    let [value, low, high] = interval(fitted.value, fitted.low, fitted.high);
+/// A fitted value and its effect; without one it is the model's own.
+pub(crate) type EffectValue<'v> = (Option<&'v FittedEffect>, &'v FittedValue);
+
+pub(crate) fn effect_values(effects: &[FittedEffect]) -> impl Iterator<Item = EffectValue<'_>> {
+    effects.iter().flat_map(|effect| {
+        let values = effect.parameters.iter();
+        values.map(move |fitted| (Some(effect), fitted))
+    })
+}
+
+/// The columns of fitted values; joints are called as `names` has them.
+pub(crate) fn value_columns<'a, 'v: 'a>(names: &'a JointNames) -> Columns<'a, EffectValue<'v>> {
+    let of = |effect: &FittedEffect| match effect.joint {
+        Some(joint) => names.joint(joint).map_or(joint.to_string(), str::to_string),
+        None if effects::at_all(&effect.kind) == "@all" => "all".to_string(),
+        None => "rig".to_string(),
+    };
+    columns_of::<EffectValue>()
+        .text("Effect", |(effect, _)| {
+            effect.map_or("model, refitted".into(), |effect| effect.title.clone())
+        })
+        .number("Joint", move |(effect, _)| effect.map_or(String::new(), of))
+        .text("Parameter", |(_, fitted)| fitted.key.clone())
+        .drawn_as(|(_, fitted)| html! { code { (fitted.path) } })
+        .interval(|(_, fitted)| fitted)
+}
+
+impl<'a, T> Columns<'a, T> {
+    /// And value, 95 % interval, to the decimals that it deserves, unit, and on pages a picture.
+    pub fn interval(self, fitted: impl Fn(&T) -> &FittedValue + Copy + 'a) -> Self {
+        let ends = move |row: &T| {
+            let fitted = fitted(row);
+            interval(fitted.value, fitted.low, fitted.high)
+        };
+        let range = move |row: &T| ends(row)[1..].join(" to ");
+        let is_known = |fitted: &FittedValue| fitted.low.is_finite() && fitted.high.is_finite();
+        let bound = |on_bound: bool| if on_bound { "on its bound" } else { "" };
+        self.number("Value", move |row| ends(row)[0].clone())
+            .number("95 % interval", range)
+            .drawn_as(move |row| {
+                html! {
+                    @if is_known(fitted(row)) { (range(row)) } @else { "not determined" }
+                }
+            })
+            .text("Unit", move |row| unit(&fitted(row).unit).to_string())
+            .text("", move |row| bound(fitted(row).on_bound).to_string())
+            .called("Note")
+            .drawn_as(move |row| note(fitted(row)))
+    }
+}
+
+/// The interval as a picture.
+fn note(fitted: &FittedValue) -> Markup {
+    let kind = fitted.path.split(['@', '.']).next();
+    let known = kind.and_then(|kind| parameter(kind, &fitted.key));
+    let vanishes_at = known.and_then(|known| known.off);
     html! {
-        tr {
-            td { (owner) }
-            td { code { (fitted.path) } }
-            td.number { b { (value) } }
-            td.number { (low) " to " (high) }
-            td { (unit(&fitted.unit)) }
-            td {
-                (plot::interval(fitted.value, fitted.low, fitted.high, off))
-                @if fitted.on_bound { p.bad { "⚠ on its bound: a warning, not a result" } }
-            }
-        }
+        (plot::interval(fitted.value, fitted.low, fitted.high, vanishes_at))
+        @if fitted.on_bound { p.bad { "⚠ on its bound: a warning, not a result" } }
     }
 }
 

@@ -1,23 +1,28 @@
 //! Where the page comes from, and how to read it.
 
 use super::Report;
-use super::page::{Section, table};
+use super::page::Section;
+use super::table::{columns_of, page_table};
+use crate::output::table::or_empty;
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
     let made = &report.provenance;
-    let role = |held_out: bool| if held_out { "log, held out" } else { "log" };
-    let headings = html! { th { "File" } th { "Kind" } th.number { "Samples" } th { "SHA-256" } };
-    let rows = html! {
-        @for file in &made.model_files { (row(&file.name, "model", None, &file.sha256)) }
-        @for file in &made.logs {
-            (row(&file.name, role(file.held_out), Some(file.samples), &file.sha256))
-        }
-    };
+    let models = made.model_files.iter();
+    let models = models.map(|file| (&file.name, "model", None, &file.sha256));
+    let logs = made.logs.iter().map(|log| {
+        let kind = if log.held_out { "log, held out" } else { "log" };
+        (&log.name, kind, Some(log.samples), &log.sha256)
+    });
+    let columns = columns_of::<(&String, &str, Option<usize>, &String)>()
+        .text("File", |(name, ..)| name.to_string())
+        .text("Kind", |(_, kind, ..)| kind.to_string())
+        .number("Samples", |(_, _, samples, _)| or_empty(*samples))
+        .drawn("SHA-256", |(.., sha256)| html! { code.hash { (sha256) } });
     let body = html! {
         p { "Program version " b { (made.program_version) } "." }
         pre { code.command { (made.command) } }
-        (table(&headings, &rows))
+        (page_table(&models.chain(logs).collect::<Vec<_>>(), &columns))
     };
     Some(Section {
         id: "provenance",
@@ -26,17 +31,6 @@ pub(super) fn section(report: &Report) -> Option<Section> {
                whether a file is the same to the last bit.",
         body,
     })
-}
-
-fn row(name: &str, kind: &str, samples: Option<usize>, sha256: &str) -> Markup {
-    html! {
-        tr {
-            td { (name) }
-            td { (kind) }
-            td.number { @if let Some(samples) = samples { (samples) } }
-            td { code.hash { (sha256) } }
-        }
-    }
 }
 
 /// The terms that the page uses.

@@ -1,25 +1,25 @@
 //! A refitted model, for people and programs.
 
+use super::table::{columns_of, table_of};
 use crate::fitting::{FittedValue, Refitted, in_windows};
 use crate::model::JointNames;
 use crate::output::number::{exact, given};
-use crate::output::table::{TableColumn, table_of, within_width};
+use crate::output::table::within_width;
 use serde_json::{Value, json};
 
 /// A refitted model for people: its values, then its errors; `before` says which model left the
 /// error before. Links and joints are called as `names` has them.
 pub fn refitted_text(refitted: &Refitted, before: &str, names: &JointNames) -> String {
     let on_bound = |on_bound: bool| if on_bound { "on its bound" } else { "" };
-    let columns: &[TableColumn<FittedValue>] = &[
-        ("Parameter", &|v| names.in_text(&v.path)),
-        ("Value", &|v| exact(v.value)),
-        ("95 % interval", &|v| {
+    let columns = columns_of::<FittedValue>()
+        .text("Parameter", |v| names.in_text(&v.path))
+        .text("Value", |v| exact(v.value))
+        .text("95 % interval", |v| {
             format!("{} to {}", exact(v.low), exact(v.high))
-        }),
-        ("Unit", &|v| v.unit.clone()),
-        ("", &|v| on_bound(v.on_bound).to_string()),
-    ];
-    let table = within_width(table_of(&refitted.values, columns), 100);
+        })
+        .text("Unit", |v| v.unit.clone())
+        .text("", |v| on_bound(v.on_bound).to_string());
+    let table = within_width(table_of(&refitted.values, &columns), 100);
     let error = &refitted.error;
     let unit = error.quantity.milli();
     let motions = if error.held_out { "held out" } else { "fitted" };

@@ -1,11 +1,11 @@
-//! What is left: how much a free form could still gain, how the error grows with time, tests of the
-//! residual.
+//! What is left: how much a free form could still gain, and tests of the residual.
 
 use super::Report;
-use super::page::{Section, table};
-use crate::compare::{Comparison, HorizonError};
+use super::page::Section;
+use super::table::{columns_of, page_table};
+use crate::compare::{Comparison, ResidualTest, SignalError};
 use crate::diagnose::ResidualStructure;
-use crate::output::number::{NONE, given, mrad, percent, short};
+use crate::output::number::{percent, short};
 use maud::{Markup, html};
 
 pub(super) fn section(report: &Report) -> Option<Section> {
@@ -13,15 +13,15 @@ pub(super) fn section(report: &Report) -> Option<Section> {
         .diagnosis
         .as_ref()
         .and_then(|d| d.residual_structure.as_ref());
-    let horizons = horizons(&report.comparisons);
     let last = report.comparisons.last();
     let tested = last.is_some_and(|last| last.signals.iter().any(|s| !s.tests.is_empty()));
-    if structure.is_none() && horizons.is_empty() && !tested {
+    if structure.is_none() && !tested {
         return None;
     }
     let body = html! {
-        @if let Some(structure) = structure { (left(structure)) }
-        @if !horizons.is_empty() { (growth(&report.comparisons, &horizons)) }
+        @if let Some(structure) = structure {
+            p { (free_form(structure)) " The least of it holds with 95 % confidence." }
+        }
         @if let Some(last) = last.filter(|_| tested) { (tests(last)) }
     };
     Some(Section {
@@ -32,83 +32,34 @@ pub(super) fn section(report: &Report) -> Option<Section> {
     })
 }
 
-fn left(structure: &ResidualStructure) -> Markup {
-    html! {
-        p {
-            "A free-form term could still gain "
-            b { (percent(structure.explainable_share.clamp(0.0, 1.0))) }
-            " of the remaining squared error above the floor (at least "
-            (percent(structure.explainable_low.clamp(0.0, 1.0)))
-            " with 95 % confidence). It leans on: " (structure.shape) "."
-        }
-    }
+/// How much a free form could still gain, in a sentence.
+pub(crate) fn free_form(structure: &ResidualStructure) -> String {
+    format!(
+        "Residual structure: a free form could still gain {} (at least {}) of the squared error \
+         above the floor; it leans on {}.",
+        percent(structure.explainable_share.clamp(0.0, 1.0)),
+        percent(structure.explainable_low.clamp(0.0, 1.0)),
+        structure.shape
+    )
 }
 
-/// Every window length that any model was run with.
-fn horizons(comparisons: &[Comparison]) -> Vec<Option<f64>> {
-    let horizons = comparisons
-        .iter()
-        .flat_map(|comparison| &comparison.horizons);
-    let mut all: Vec<Option<f64>> = horizons.map(|horizon| horizon.horizon_s).collect();
-    let length = |horizon: &Option<f64>| horizon.unwrap_or(f64::INFINITY);
-    all.sort_by(|a, b| length(a).total_cmp(&length(b)));
-    all.dedup();
-    all
-}
-
-fn growth(comparisons: &[Comparison], horizons: &[Option<f64>]) -> Markup {
-    let error = |comparison: &Comparison, horizon: Option<f64>| {
-        let same = |error: &&HorizonError| error.horizon_s == horizon;
-        let found = comparison.horizons.iter().find(same);
-        found.map_or(NONE.into(), |error| mrad(error.rms))
-    };
-    let name = |horizon: &Option<f64>| match horizon {
-        Some(seconds) => format!("{} s", given(*seconds)),
-        None => "whole motion".into(),
-    };
-    let headings = html! {
-        th { "Model" }
-        @for horizon in horizons { th.number { (name(horizon)) } }
-    };
-    let rows = html! {
-        @for comparison in comparisons.iter().filter(|c| !c.horizons.is_empty()) {
-            tr {
-                td { (comparison.model) }
-                @for horizon in horizons { td.number { (error(comparison, *horizon)) } }
-            }
-        }
-    };
-    html! {
-        h3 { "Error against time without correction" }
-        p.note {
-            "RMS error in mrad when the model starts afresh from the measurement every so often. \
-             Wrong physics grows with time; noise does not."
-        }
-        (table(&headings, &rows))
-    }
-}
+/// A signal and a test of its residual.
+type Tested<'a> = (&'a SignalError, &'a ResidualTest);
 
 fn tests(comparison: &Comparison) -> Markup {
-    let headings = html! {
-        th.number { "Joint" } th { "Test" } th { "Result" } th.number { "Statistic" }
-        th.number { "Limit" } th { "What it means" }
-    };
-    let rows = html! {
-        @for signal in &comparison.signals {
-            @for test in &signal.tests {
-                tr {
-                    td.number { (signal.joint) @if signal.beside_angle { ", rate" } }
-                    td { (test.name) }
-                    td {
-                        @if test.passed { span.good { "✓ passes" } }
-                        @else { span.bad { "✗ fails" } }
-                    }
-                    td.number { (short(test.statistic)) }
-                    td.number { (short(test.threshold)) }
-                    td { (test.meaning) }
-                }
-            }
-        }
-    };
-    html! { h3 { "Tests of the residual: " (comparison.model) } (table(&headings, &rows)) }
+    let signals = comparison.signals.iter();
+    let tests = signals.flat_map(|signal| signal.tests.iter().map(move |test| (signal, test)));
+    let result = |passed: bool| if passed { "✓ passes" } else { "✗ fails" };
+    let columns = columns_of::<Tested>()
+        .number("Joint", |(signal, _)| signal.label())
+        .text("Test", |(_, test)| test.name.to_string())
+        .text("Result", |(_, test)| result(test.passed).to_string())
+        .judged(|(_, test)| test.passed)
+        .number("Statistic", |(_, test)| short(test.statistic))
+        .number("Limit", |(_, test)| short(test.threshold))
+        .text("What it means", |(_, test)| test.meaning.clone());
+    html! {
+        h3 { "Tests of the residual: " (comparison.model) }
+        (page_table(&tests.collect::<Vec<_>>(), &columns))
+    }
 }

@@ -1,18 +1,17 @@
 //! A diagnosis as text for the terminal.
 
-use super::words::{
-    floor_interval, in_columns, in_milli, measured_on, odd_shares, reduction, sentences, sorted,
-    verdict_word, with_ends,
-};
-use crate::diagnose::words::{SHOWN as RIVALS, change, explained_by, headline as sentence};
-use crate::diagnose::{Alternative, BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
-use crate::effects;
-use crate::fitting::{FittedValue, in_windows};
+use super::candidates::{alternatives, tried_columns};
+use super::parameters::{EffectValue, effect_values, value_columns};
+use super::remains::free_form;
+use super::table::table_lines;
+use super::waterfall::budget_columns;
+use super::words::{floor_interval, measured_on, odd_shares, reduction, sentences, sorted};
+use crate::diagnose::words::{change, headline as sentence};
+use crate::diagnose::{BudgetedPart, Diagnosis, FittedEffect, Fold, WrongValue};
+use crate::fitting::in_windows;
 use crate::model::{JointNames, MeasuredSignal};
-use crate::output::number::unit;
-use crate::output::number::{NONE, given, interval, mrad, percent, short};
-use crate::output::table::{TableColumn, plain_table, table_of, unbroken};
-use comfy_table::{CellAlignment, Table};
+use crate::output::number::{given, mrad};
+use maud::Markup;
 
 /// Columns of a table.
 const WIDTH: u16 = 90;
@@ -28,10 +27,10 @@ pub fn diagnosis_text(diagnosis: &Diagnosis, names: &JointNames) -> String {
         wrong_values(&diagnosis.wrong_values),
         error(diagnosis),
         budget(&diagnosis.budget, names, diagnosis.error.quantity),
-        alternatives(&diagnosis.alternatives, diagnosis.error.quantity),
+        list("As good", &alternatives(diagnosis)),
         not_chosen(diagnosis, names, true),
         not_chosen(diagnosis, names, false),
-        residual_structure(diagnosis),
+        diagnosis.residual_structure.as_ref().map(free_form),
         list("Next", &diagnosis.next),
         list("Warnings", &diagnosis.warnings),
     ];
@@ -40,7 +39,7 @@ pub fn diagnosis_text(diagnosis: &Diagnosis, names: &JointNames) -> String {
 }
 
 fn headline(diagnosis: &Diagnosis) -> String {
-    let verdict = verdict_word(diagnosis.verdict);
+    let verdict = diagnosis.verdict.name();
     let mut lines = vec![format!("Verdict: {verdict}. {}", sentence(diagnosis))];
     lines.extend(sentences(diagnosis).cloned());
     lines.join("\n")
@@ -52,35 +51,9 @@ pub(crate) fn parameters(
     effects: &[FittedEffect],
     names: &JointNames,
 ) -> Option<String> {
-    let mut values = Vec::new();
-    for effect in effects {
-        values.extend(effect.parameters.iter().map(|fitted| (effect, fitted)));
-    }
-    let ends = |fitted: &FittedValue| interval(fitted.value, fitted.low, fitted.high);
-    let note = |on_bound: bool| if on_bound { "on its bound" } else { "" };
-    let columns: &[TableColumn<(&FittedEffect, &FittedValue)>] = &[
-        ("Effect", &|(effect, _)| effect.title.clone()),
-        ("Joint", &|(effect, _)| {
-            let all = match effects::at_all(&effect.kind) {
-                "@all" => "all",
-                _ => "rig",
-            };
-            effect.joint.map_or(all.into(), |joint| {
-                names.joint(joint).map_or(joint.to_string(), str::to_string)
-            })
-        }),
-        ("Parameter", &|(_, fitted)| fitted.key.clone()),
-        ("Value", &|(_, fitted)| ends(fitted)[0].clone()),
-        ("95 % interval", &|(_, fitted)| {
-            ends(fitted)[1..].join(" to ")
-        }),
-        ("Unit", &|(_, fitted)| unit(&fitted.unit).to_string()),
-        ("", &|(_, fitted)| note(fitted.on_bound).to_string()),
-    ];
-    Some(format!(
-        "{title}\n{}",
-        lines(table_of(&values, columns), &[1, 3, 4])?
-    ))
+    let values: Vec<EffectValue> = effect_values(effects).collect();
+    let lines = table_lines(&values, &value_columns(names), WIDTH)?;
+    Some(format!("{title}\n{lines}"))
 }
 
 fn wrong_values(wrong: &[WrongValue]) -> Option<String> {
@@ -150,82 +123,32 @@ fn folds(folds: &[Fold], unit: &str) -> Option<String> {
 
 /// What each part of an explanation of several removes.
 fn budget(parts: &[BudgetedPart], names: &JointNames, quantity: MeasuredSignal) -> Option<String> {
-    let [leaves, without] = in_columns(["leaves", "without it"], quantity);
-    let columns: &[TableColumn<&BudgetedPart>] = &[
-        ("Error budget", &|part| names.in_text(&part.part)),
-        ("Alone", &|part| with_ends(&part.alone)),
-        (&leaves, &|part| mrad(part.alone.error_rad)),
-        ("Beyond the others", &|part| with_ends(&part.beyond_others)),
-        (&without, &|part| mrad(part.beyond_others.error_rad)),
-    ];
     if parts.len() < 2 {
         return None;
     }
-    let table = table_of(&parts.iter().collect::<Vec<_>>(), columns);
-    let mut text = format!(
-        "Share of the squared error of the model as given that each part removes\n{}",
-        lines(table, &[1, 2, 3, 4])?
-    );
-    for sentence in odd_shares(parts) {
-        text += &format!("\n{sentence}");
-    }
-    Some(text)
-}
-
-fn alternatives(alternatives: &[Alternative], quantity: MeasuredSignal) -> Option<String> {
-    let line = |alternative: &Alternative| {
-        let values = alternative
-            .effects
-            .iter()
-            .flat_map(|effect| &effect.parameters);
-        let wrong = alternative.wrong_values.iter().map(|wrong| &wrong.fitted);
-        let values = values.chain(wrong);
-        let values = values.map(|fitted| format!("{} = {fitted}", fitted.key));
-        let effects = explained_by(&alternative.effects, &alternative.wrong_values);
-        let error = in_milli(alternative.error_rad, quantity);
-        format!(
-            "{effects}: {error}; {}",
-            values.collect::<Vec<_>>().join(", ")
-        )
-    };
-    let mut lines: Vec<String> = alternatives.iter().take(RIVALS).map(line).collect();
-    lines.extend(and_more(alternatives.len(), RIVALS));
-    list("As good", &lines)
+    let table = table_lines(parts, &budget_columns(names, quantity), WIDTH)?;
+    let title = "Share of the squared error of the model as given that each part removes";
+    let lines = [title, &table].into_iter().chain(odd_shares(parts));
+    Some(lines.collect::<Vec<_>>().join("\n"))
 }
 
 /// What was tried and not chosen: what does as well, then what does worse.
 fn not_chosen(diagnosis: &Diagnosis, names: &JointNames, as_good: bool) -> Option<String> {
-    let rows = sorted(&diagnosis.ruled_out, as_good);
+    let rows = sorted(diagnosis, as_good);
     let title = if as_good {
         "As good, not needed"
     } else {
         "Ruled out"
     };
-    let [fitted, held_out] = in_columns(["Fitted", "Held out"], diagnosis.error.quantity);
-    let mut table = plain_table([title, &fitted, &held_out, "BIC", "Why"]);
-    for tried in rows.iter().take(SHOWN) {
-        table.add_row([
-            names.in_text(&tried.set.join(" + ")),
-            mrad(tried.training_error_rad),
-            tried.held_out_error_rad.map_or(NONE.into(), mrad),
-            short(tried.bic_change),
-            names.in_text(&tried.why),
-        ]);
-    }
-    let mut lines = vec![lines(table, &[1, 2, 3])?];
+    let quantity = diagnosis.error.quantity;
+    let columns = tried_columns(title, names, quantity, |_| Markup::default());
+    let mut lines = vec![table_lines(
+        rows.iter().copied().take(SHOWN),
+        &columns,
+        WIDTH,
+    )?];
     lines.extend(and_more(rows.len(), SHOWN));
     Some(lines.join("\n"))
-}
-
-fn residual_structure(diagnosis: &Diagnosis) -> Option<String> {
-    let structure = diagnosis.residual_structure.as_ref()?;
-    Some(format!(
-        "Residual structure: a free form could still gain {} (at least {}) of the squared error \
-         above the floor; it leans on {}.",
-        percent(structure.explainable_share.clamp(0.0, 1.0)),
-        percent(structure.explainable_low.clamp(0.0, 1.0)),
-        structure.shape
-    ))
 }
 
 pub(crate) fn list(title: &str, items: &[String]) -> Option<String> {
@@ -233,22 +156,6 @@ pub(crate) fn list(title: &str, items: &[String]) -> Option<String> {
     (!items.is_empty()).then(|| format!("{title}\n{}", lines.join("\n")))
 }
 
-/// The table's lines, numbers in these columns under each other; nothing without rows.
-fn lines(mut table: Table, numbers: &[usize]) -> Option<String> {
-    table.set_width(WIDTH);
-    table = unbroken(table);
-    for index in numbers {
-        if let Some(column) = table.column_mut(*index) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    let lines: Vec<String> = table
-        .lines()
-        .map(|line| line.trim_end().to_string())
-        .collect();
-    (!table.is_empty()).then(|| lines.join("\n"))
-}
-
-fn and_more(all: usize, shown: usize) -> Option<String> {
+pub(crate) fn and_more(all: usize, shown: usize) -> Option<String> {
     (all > shown).then(|| format!("and {} more", all - shown))
 }

@@ -1,10 +1,11 @@
 //! Measured against model: per motion and joint the angles, and below them what is left.
 
-use super::page::{Section, table};
+use super::page::Section;
+use super::table::page_matrix;
 use super::{AFTER, BEFORE, FLOOR, MEASURED, Report};
-use crate::compare::{Comparison, SignalError, Trace};
+use crate::compare::{COMPARISON_LEGEND, Comparison, SignalError, Trace, comparison_rows};
 use crate::model::MeasuredSignal;
-use crate::output::number::{mrad, short};
+use crate::output::number::mrad;
 use crate::plot::{Axes, Scale, Tone, span};
 use maud::{Markup, html};
 
@@ -37,7 +38,7 @@ pub(super) fn section(report: &Report) -> Option<Section> {
             @if pairs.iter().any(Pair::restarts) { p.note { (RESTARTS) } }
         }
         @for (index, pair) in pairs.iter().enumerate() { (drawn(pair, index < OPEN)) }
-        @if !before.signals.is_empty() { (fits(report)) }
+        @if !before.signals.is_empty() { (side_by_side(report)) }
     };
     Some(Section {
         id: "traces",
@@ -215,36 +216,16 @@ fn chart(pair: &Pair) -> Markup {
     }
 }
 
-/// Behind the figures of a rate, or a displacement, in a column of mrad.
-fn per_s(signal: &SignalError) -> &'static str {
-    match signal.quantity {
-        MeasuredSignal::Rate => " /s",
-        MeasuredSignal::Displacement => " mm",
-        MeasuredSignal::Angle | MeasuredSignal::Nothing => "",
-    }
-}
-
-/// Per joint, each model of the chain.
-fn fits(report: &Report) -> Markup {
-    let headings = html! {
-        th { "Model" } th.number { "Joint" } th.number { "RMS, mrad" } th.number { "Largest, mrad" }
-        th.number { "Fit" } th.number { "Floor, mrad" }
-    };
-    let rows = html! {
-        @for comparison in &report.comparisons {
-            @for signal in &comparison.signals {
-                tr {
-                    td { (comparison.model) }
-                    td.number { (signal.joint) @if signal.beside_angle { ", rate" } }
-                    td.number { (mrad(signal.rms)) (per_s(signal)) }
-                    td.number { (mrad(signal.largest)) (per_s(signal)) }
-                    td.number { (short(signal.fit_percent)) " %" }
-                    td.number { (mrad(signal.floor)) (per_s(signal)) }
-                }
-            }
+/// Models side by side.
+fn side_by_side(report: &Report) -> Markup {
+    html! {
+        h3 { "All motions together" }
+        p.note {
+            (COMPARISON_LEGEND) ". In runs of so many seconds the model starts afresh from the \
+             measurement: wrong physics grows with time, noise does not."
         }
-    };
-    html! { h3 { "All motions together" } (table(&headings, &rows)) }
+        (page_matrix(&comparison_rows(&report.comparisons)))
+    }
 }
 
 #[cfg(test)]

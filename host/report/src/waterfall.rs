@@ -1,12 +1,13 @@
 //! How the error falls from model to model, down to the floor; and motion by motion.
 
 use super::command::quoted;
-use super::page::{Section, table};
+use super::page::Section;
+use super::table::{Columns, columns_of, page_table};
 use super::words::{in_columns, in_milli, odd_shares, set_name, with_ends};
-use super::{AFTER, BEFORE, FLOOR, Report, pooled};
+use super::{AFTER, BEFORE, FLOOR, Report};
 use crate::compare::Comparison;
 use crate::diagnose::{BudgetedPart, MotionError};
-use crate::model::MeasuredSignal;
+use crate::model::{JointNames, MeasuredSignal};
 use crate::output::number::{mrad, percent};
 use crate::plot::{Bar, largest};
 use maud::{Markup, html};
@@ -41,9 +42,9 @@ pub(super) fn section(report: &Report) -> Option<Section> {
 
 fn steps(chain: &[&Comparison]) -> Markup {
     let quantity = chain[0].quantity();
-    let error = |comparison: &Comparison| pooled(comparison, |signal| signal.rms);
+    let error = |comparison: &Comparison| comparison.pooled_rms(|signal| signal.rms);
     let errors: Vec<f64> = chain.iter().map(|comparison| error(comparison)).collect();
-    let floor = pooled(chain[0], |signal| signal.floor);
+    let floor = chain[0].pooled_rms(|signal| signal.floor);
     let full = largest(errors.iter().copied().chain([floor]));
     let previous = |index: usize| index.checked_sub(1).map(|previous| errors[previous]);
     let bar = |index: usize| Bar {
@@ -79,22 +80,7 @@ fn change(from: f64, to: f64) -> String {
 
 /// The error budget: shares that need not add up.
 fn by_part(budget: &[BudgetedPart], quantity: MeasuredSignal) -> Markup {
-    let [leaves, without] = in_columns(["Leaves", "Without it"], quantity);
-    let headings = html! {
-        th { "Part" } th.number { "Alone" } th.number { (leaves) }
-        th.number { "Beyond the others" } th.number { (without) }
-    };
-    let rows = html! {
-        @for part in budget {
-            tr {
-                td { (set_name(std::slice::from_ref(&part.part))) }
-                td.number { (with_ends(&part.alone)) }
-                td.number { (mrad(part.alone.error_rad)) }
-                td.number { (with_ends(&part.beyond_others)) }
-                td.number { (mrad(part.beyond_others.error_rad)) }
-            }
-        }
-    };
+    let names = JointNames::default();
     html! {
         h3 { "What each part removes" }
         p.lead {
@@ -103,34 +89,40 @@ fn by_part(budget: &[BudgetedPart], quantity: MeasuredSignal) -> Markup {
              much alone and little beyond the others."
             @for sentence in odd_shares(budget) { " " (quoted(sentence)) }
         }
-        (table(&headings, &rows))
+        (page_table(budget, &budget_columns(&names, quantity)))
     }
 }
 
+/// The columns of an error budget; joints are called as `names` has them.
+pub(crate) fn budget_columns(
+    names: &JointNames,
+    quantity: MeasuredSignal,
+) -> Columns<'_, BudgetedPart> {
+    let [leaves, without] = in_columns(["leaves", "without it"], quantity);
+    columns_of::<BudgetedPart>()
+        .text("Error budget", |part| names.in_text(&part.part))
+        .drawn_as(|part| html! { (set_name(std::slice::from_ref(&part.part))) })
+        .number("Alone", |part| with_ends(&part.alone))
+        .number(leaves, |part| mrad(part.alone.error_rad))
+        .number("Beyond the others", |part| with_ends(&part.beyond_others))
+        .number(without, |part| mrad(part.beyond_others.error_rad))
+}
+
 fn by_motion(motions: &[MotionError], quantity: MeasuredSignal) -> Markup {
-    let [before, after_change] = in_columns(["Before", "After"], quantity);
-    let errors = motions
-        .iter()
-        .flat_map(|motion| [motion.before_rad, motion.after_rad]);
-    let full = largest(errors);
-    let after = |motion: &MotionError| Bar {
+    let [before, after] = in_columns(["Before", "After"], quantity);
+    let errors = motions.iter();
+    let full = largest(errors.flat_map(|motion| [motion.before_rad, motion.after_rad]));
+    let bar = |motion: &MotionError| Bar {
         ghost: Some(motion.before_rad),
         ..Bar::new(motion.after_rad, full, AFTER)
     };
-    let headings = html! {
-        th { "Motion" } th { "Role" } th.number { (before) } th.number { (after_change) }
-        th.wide { "Drawn" }
-    };
-    let rows = html! {
-        @for motion in motions {
-            tr {
-                td { (motion.motion) }
-                td { @if motion.held_out { "held out" } @else { "fitted" } }
-                td.number { (mrad(motion.before_rad)) }
-                td.number { (mrad(motion.after_rad)) }
-                td.wide { (after(motion).draw()) }
-            }
-        }
-    };
-    html! { h3 { "Motion by motion" } (table(&headings, &rows)) }
+    let role = |held_out: bool| if held_out { "held out" } else { "fitted" };
+    let columns = columns_of::<MotionError>()
+        .text("Motion", |motion| motion.motion.clone())
+        .text("Role", |motion| role(motion.held_out).to_string())
+        .number(before, |motion| mrad(motion.before_rad))
+        .number(after, |motion| mrad(motion.after_rad))
+        .drawn("Drawn", |motion| bar(motion).draw())
+        .class("wide");
+    html! { h3 { "Motion by motion" } (page_table(motions, &columns)) }
 }

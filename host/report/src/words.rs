@@ -2,24 +2,11 @@
 
 use crate::diagnose::names::{at_joint, listed, value_name};
 use crate::diagnose::words::headline;
-use crate::diagnose::{BudgetShare, BudgetedPart, Diagnosis, FREE_VALUES, RuledOut, Verdict};
+use crate::diagnose::{BudgetShare, BudgetedPart, Diagnosis, FREE_VALUES, RuledOut};
 use crate::effects::named;
 use crate::fitting::ErrorReduction;
 use crate::model::{MeasuredSignal, ParameterPath};
 use crate::output::number::{mrad, percent};
-
-/// One word for a verdict, as in JSON.
-pub(super) fn verdict_word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Nominal => "nominal",
-        Verdict::Adequate => "adequate",
-        Verdict::WrongValue => "wrong_value",
-        Verdict::Named => "named",
-        Verdict::Ambiguous => "ambiguous",
-        Verdict::Unexplained => "unexplained",
-        Verdict::Unfit => "unfit",
-    }
-}
 
 /// A share with the ends of its interval: "96 % (94 to 97)"; without them where they show no
 /// difference.
@@ -83,17 +70,10 @@ pub(super) fn odd_shares(budget: &[BudgetedPart]) -> Vec<&'static str> {
     said.map(|(_, sentence)| sentence).collect()
 }
 
-/// Tried sets that do as well as what was chosen, or those that do not; the smallest held-out error
-/// first, then those that never came that far.
-pub(super) fn sorted(ruled_out: &[RuledOut], as_good: bool) -> Vec<&RuledOut> {
-    let rows = ruled_out.iter().filter(|tried| tried.as_good == as_good);
-    let mut sorted: Vec<&RuledOut> = rows.collect();
-    let key = |tried: &RuledOut| tried.held_out_error_rad.unwrap_or(f64::INFINITY);
-    sorted.sort_by(|a, b| {
-        let held_out = key(a).total_cmp(&key(b));
-        held_out.then(a.training_error_rad.total_cmp(&b.training_error_rad))
-    });
-    sorted
+/// Tried sets that do as well as what was chosen, or those that do not.
+pub(super) fn sorted(diagnosis: &Diagnosis, as_good: bool) -> Vec<&RuledOut> {
+    let tried = diagnosis.tried().into_iter();
+    tried.filter(|tried| tried.as_good == as_good).collect()
 }
 
 /// On which motions the error was taken.

@@ -10,6 +10,7 @@ use handstand_challenge as challenge;
 use handstand_control::synth;
 #[cfg(feature = "virtual-cm5")]
 use handstand_diagnose::diagnose;
+#[cfg(feature = "virtual-cm5")]
 use handstand_experiment as experiment;
 use handstand_link as link;
 #[cfg(feature = "virtual-cm5")]

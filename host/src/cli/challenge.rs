@@ -14,7 +14,7 @@
 //! `true_error_rad`.
 
 use super::{Console, ExitStatus, show};
-use handstand::challenge::{self, ChallengeScore, Hidden, kind_named};
+use handstand::challenge::{self, ChallengeScore, Hidden, kind_named, score_rows};
 use handstand::diagnose::whole_error_rad;
 use handstand::fitting::effect_named;
 use handstand::output::number::exact;
@@ -103,24 +103,12 @@ fn hidden(named: Option<&str>) -> Result<Hidden> {
 
 /// A score for people.
 pub fn text(score: &ChallengeScore) -> String {
-    let mut table = show::table(["", "True", "Estimated"]);
-    let nothing = || "nothing".to_string();
-    let found = match score.added.as_slice() {
-        [] => nothing(),
-        added => added.join(", "),
-    };
-    let hidden = score.hidden.clone().unwrap_or_else(nothing);
-    table.add_row(["effect".into(), hidden, found]);
-    for value in &score.values {
-        let estimate = value.estimate.map_or("-".to_string(), exact);
-        table.add_row([value.key.clone(), exact(value.true_value), estimate]);
-    }
-    let errors = [score.true_error_rad, score.error_rad].map(|rad| exact(1e3 * rad));
-    table.add_row(
-        ["error on c.csv, mrad"]
-            .into_iter()
-            .chain(errors.iter().map(String::as_str)),
-    );
+    let values = score.values.iter();
+    let values = values.map(|value| (value.key.as_str(), value.true_value, value.estimate));
+    let errors = [score.true_error_rad, score.error_rad];
+    let rows = score_rows(score.hidden.as_deref(), &score.added, values, errors);
+    let mut table = show::table([""]);
+    table.set_header(&rows[0]).add_rows(&rows[1..]);
     let said = if score.solved {
         "Solved: the model names what was hidden."
     } else {

@@ -24,7 +24,7 @@
 use super::controllers::{chosen_conditions, chosen_designs};
 use super::gains_choice::GainsChoice;
 use super::{Console, ExitStatus, input, show};
-use handstand::output::table::TableColumn;
+use handstand::report::table::columns_of;
 use handstand::study::{
     Case, Judging, Longest, SERVO_DEAD_TIME_S, SIGNAL_PATHS, SignalPath, longest_linear,
     longest_stabilised,
@@ -188,36 +188,33 @@ impl PathBudget {
 }
 
 fn text(margins: &[DelayMargins], paths: &[PathBudget], args: &DelaysArgs) -> String {
-    let longest: &[TableColumn<DelayMargins>] = &[
-        ("Controller", &|o| o.controller.to_string()),
-        ("uncompensated", &|o| ms(o.uncompensated)),
-        ("one sample compensated", &|o| ms(o.one_sample)),
-        ("compensated", &|o| ms(o.compensated)),
-        ("stabilised, compensated", &|o| {
+    let longest = columns_of::<DelayMargins>()
+        .text("Controller", |o| o.controller.to_string())
+        .text("uncompensated", |o| ms(o.uncompensated))
+        .text("one sample compensated", |o| ms(o.one_sample))
+        .text("compensated", |o| ms(o.compensated))
+        .text("stabilised, compensated", |o| {
             o.stabilised.map_or(String::new(), ms)
-        }),
-    ];
-    let budget: &[TableColumn<PathBudget>] = &[
-        ("From sample to torque", &|p| p.title()),
-        ("ms", &|p| format!("{:.1}", 1e3 * p.total_s)),
-        ("stable", &|p| {
+        });
+    let budget = columns_of::<PathBudget>()
+        .text("From sample to torque", |p| p.title())
+        .text("ms", |p| format!("{:.1}", 1e3 * p.total_s))
+        .text("stable", |p| {
             format!("{} of {}", p.stable.len(), margins.len())
-        }),
-        (
-            "stabilised, compensated",
-            &|path| match path.stabilised.as_deref() {
+        })
+        .text("stabilised, compensated", |path| {
+            match path.stabilised.as_deref() {
                 None => "not simulated".into(),
                 Some([]) => "none".into(),
                 Some(stabilised) => stabilised.join(", "),
-            },
-        ),
-    ];
+            }
+        });
     format!(
         "Longest delay tolerated, ms; the linear loop, and 95 % of robots stabilised under \
          `{}`:\n{}\n\n{}",
         args.condition,
-        show::table_of(margins, longest),
-        show::table_of(paths, budget)
+        show::table_of(margins, &longest),
+        show::table_of(paths, &budget)
     )
 }
 

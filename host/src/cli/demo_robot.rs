@@ -6,10 +6,8 @@ use super::{Console, ExitStatus};
 use handstand::deploy::rehearsal::BalanceAttempt;
 use handstand::diagnose::Verdict;
 use handstand::log::LogRequest;
-use handstand::output::number::exact;
-use handstand::output::table::TableColumn;
 use handstand::robot_demo::{
-    DemoStep, LIMIT_OPTIONS, PAYLOAD_KG, RobotDemo, ScoredEffect, run as circle,
+    DemoStep, LIMIT_OPTIONS, PAYLOAD_KG, RobotDemo, effect_columns, run as circle,
 };
 use handstand::{Error, Result};
 use std::path::Path;
@@ -107,13 +105,6 @@ fn said(attempt: &BalanceAttempt) -> String {
 }
 
 fn text(demo: &RobotDemo) -> String {
-    let columns: &[TableColumn<ScoredEffect>] = &[
-        ("Hidden", &|effect| effect.address.clone()),
-        ("Value", &|effect| effect.key.clone()),
-        ("True", &|effect| exact(effect.true_value)),
-        ("Estimated", &|effect| or_dash(effect.estimate, exact)),
-        ("95 % interval", &ScoredEffect::interval_words),
-    ];
     let named = match (demo.named, demo.verdict) {
         (true, _) => "The diagnosis named what was hidden.",
         (false, Verdict::Named) => "The diagnosis named something else.",
@@ -125,6 +116,6 @@ fn text(demo: &RobotDemo) -> String {
     let (before, after) = (said(&demo.nominal), said(&demo.learned));
     format!(
         "{}\n{named}\n\nAs believed: {before}\nAs learned: {after}",
-        table_of(&demo.effects, columns)
+        table_of(&demo.effects, &effect_columns())
     )
 }

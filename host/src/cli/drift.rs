@@ -22,7 +22,7 @@ use handstand::fitting::{Drift, DriftReport, DriftSession, OneValue, drift, free
 use handstand::log::{LogRequest, expanded};
 use handstand::model::JointNames;
 use handstand::output::number::exact;
-use handstand::output::table::TableColumn;
+use handstand::report::table::columns_of;
 use std::path::PathBuf;
 
 /// Test whether a model's values differ between sessions or servos.
@@ -88,20 +88,19 @@ fn of(drift: &Drift, heading: &str, names: &JointNames) -> String {
         name.unwrap_or(own).to_string()
     };
     let note = |out: bool| if out { "stands out" } else { "" };
-    let columns: &[TableColumn<OneValue>] = &[
-        (heading, &|value| name(&value.of)),
-        (&path, &|value| exact(value.fitted.value)),
-        ("95 % interval", &|value| {
+    let columns = columns_of::<OneValue>()
+        .text(heading, |value| name(&value.of))
+        .text(path, |value| exact(value.fitted.value))
+        .text("95 % interval", |value| {
             format!(
                 "{} to {}",
                 exact(value.fitted.low),
                 exact(value.fitted.high)
             )
-        }),
-        ("Unit", &|value| value.fitted.unit.clone()),
-        ("", &|value| note(value.stands_out).to_string()),
-    ];
-    let table = show::table_of(&drift.values, columns);
+        })
+        .text("Unit", |value| value.fitted.unit.clone())
+        .text("", |value| note(value.stands_out).to_string());
+    let table = show::table_of(&drift.values, &columns);
     let verdict = match (drift.differ, drift.probability) {
         (true, Some(p)) => format!(
             "They differ: chance alone scatters as much in {}.{}",

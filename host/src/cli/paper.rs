@@ -16,9 +16,9 @@
 use super::page::PageFile;
 use super::{Console, ExitStatus, show};
 use handstand::Result;
-use handstand::output::table::TableColumn;
 use handstand::paper::{
-    Agreement, CheckedNumber, Computed, Reproduction, STEPS, check, html, reproduce,
+    Agreement, CheckedNumber, Computed, Reproduction, STEPS, check, follows, html, number_columns,
+    reproduce,
 };
 use serde_json::{Value, json};
 
@@ -48,7 +48,7 @@ pub fn run(args: &PaperArgs, console: &Console) -> Result<ExitStatus> {
         }
     };
     console.result(&data(&rows, &computed, whole.as_ref()), || {
-        let mut parts = vec![numbers(&rows), follows(&computed)];
+        let mut parts = vec![numbers(&rows), following(&computed)];
         parts.extend(whole.as_ref().filter(|_| args.findings).map(judged));
         parts.join("\n\n")
     })?;
@@ -69,58 +69,22 @@ fn worked(console: &Console) -> Result<Reproduction> {
 }
 
 fn numbers(rows: &[CheckedNumber]) -> String {
-    let columns: &[TableColumn<CheckedNumber>] = &[
-        ("Where", &|r| r.printed.place.to_string()),
-        ("Quantity", &|r| r.printed.quantity.name()),
-        ("Stated", &|r| r.printed.text.to_string()),
-        ("Computed", &|r| r.computed_text()),
-        ("Verdict", &|r| r.verdict.to_string()),
-    ];
     let count = |of: fn(&Agreement) -> bool| rows.iter().filter(|row| of(&row.verdict)).count();
     format!(
         "{}\n{} numbers: {} agree to the last digit, {} misprints. `recomputed`: not printed; \
          found from Table 1\nwith SciPy. servo: found by `identify` in data made with eq. (2), \
          half of 95 %.",
-        show::table_of(rows, columns),
+        show::table_of(rows, &number_columns()),
         rows.len(),
         count(|verdict| *verdict == Agreement::Agrees),
         count(|verdict| matches!(verdict, Agreement::Sign | Agreement::Digits(..)))
     )
 }
 
-fn follows(computed: &Computed) -> String {
-    let facts = &computed.servo_facts;
-    let mut lines = vec!["What follows without being printed:".to_string()];
-    for zeros in &computed.zeros {
-        let [a, b] = zeros.outputs;
-        let j = if zeros.squared < 0.0 { " j" } else { "" };
-        lines.push(format!(
-            "  zeros from the torques to (q{a}, q{b})  +-{:.4}{j} 1/s",
-            zeros.squared.abs().sqrt()
-        ));
-    }
-    lines.push(format!(
-        "  servo, static gain                  {:.4}",
-        facts.gain
-    ));
-    for pole in facts.poles.iter().filter(|pole| pole.im >= 0.0) {
-        lines.push(format!(
-            "  servo, poles                        z = {:.4} +- {:.4} j, |z| = {:.4}",
-            pole.re,
-            pole.im,
-            pole.norm()
-        ));
-    }
-    lines.push(format!(
-        "  servo, poles in continuous time     {:.2} +- {:.2} j 1/s",
-        facts.continuous.re,
-        facts.continuous.im.abs()
-    ));
-    lines.push(format!(
-        "  servo, settles to 2 % in            {:.2} s",
-        facts.settling_s
-    ));
-    lines.join("\n")
+fn following(computed: &Computed) -> String {
+    let lines = follows(computed).into_iter();
+    let lines = lines.map(|(what, value)| format!("\n  {what:<34}  {value}"));
+    "What follows without being printed:".to_string() + &lines.collect::<String>()
 }
 
 fn judged(study: &Reproduction) -> String {

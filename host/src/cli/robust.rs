@@ -23,7 +23,7 @@ use super::gains::of_options;
 use super::weight_arg::{WeightArg, weight};
 use super::{Console, ExitStatus, input, show};
 use handstand::output::number::exact;
-use handstand::output::table::TableColumn;
+use handstand::report::table::columns_of;
 use handstand::study::{Case, MassErrors, radii, unstable_share};
 use handstand::synth::controllers::{DEFAULT, DesignModel, MASS_ERROR, MultiModel, WEIGHT};
 use handstand::synth::{Weight, dlqr, upright, zoh};
@@ -180,20 +180,19 @@ fn judged(args: &RobustArgs, model: &Model, console: &Console) -> Result<Vec<Gai
 }
 
 fn text(args: &RobustArgs, gains: &[GainRobustness]) -> String {
-    let columns: &[TableColumn<GainRobustness>] = &[
-        ("Gain", &|g| g.gain.clone()),
-        ("unstable %", &|g| format!("{:.1}", 100.0 * g.unstable)),
-        ("median radius", &|g| format!("{:.4}", g.median_radius)),
-        ("worst radius", &|g| format!("{:.4}", g.worst_radius)),
-        ("2 % unstable at, %", &|g| {
+    let columns = columns_of::<GainRobustness>()
+        .text("Gain", |g| g.gain.clone())
+        .text("unstable %", |g| format!("{:.1}", 100.0 * g.unstable))
+        .text("median radius", |g| format!("{:.4}", g.median_radius))
+        .text("worst radius", |g| format!("{:.4}", g.worst_radius))
+        .text("2 % unstable at, %", |g| {
             format!("{:.1}", 100.0 * g.largest_error)
-        }),
-    ];
+        });
     let mut text = format!(
         "{} robots, each mass within {} % of the model's:\n{}\n\nThe multi-model gain, u = -K x:",
         args.draws,
         exact(args.masses),
-        show::table_of(gains, columns)
+        show::table_of(gains, &columns)
     );
     for row in gains.last().map_or(&[][..], |gain| &gain.k) {
         let row: Vec<String> = row.iter().map(|k| format!("{k:>10.4}")).collect();

@@ -5,22 +5,20 @@ use comfy_table::{ContentArrangement, Table};
 use handstand::diagnose::how_to_measure;
 use handstand::fitting::Undetermined;
 use handstand::output::number::exact;
-use handstand::output::table::{self, TableColumn, plain_table};
+use handstand::output::table::{plain_table, within_width};
+use handstand::report::table::{self, Columns};
 use handstand::synth::{linearise, upright};
 use handstand::sysid::IntervalEstimate;
 use handstand::{Model, Result};
 
 /// A plain table without frame.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
-    table::within_width(plain_table(header), 100)
+    within_width(plain_table(header), 100)
 }
 
 /// A plain table, a line for each of `rows`.
-pub fn table_of<'r, T: 'r>(
-    rows: impl IntoIterator<Item = &'r T>,
-    columns: &[TableColumn<T>],
-) -> Table {
-    table::within_width(table::table_of(rows, columns), 100)
+pub fn table_of<'r, T: 'r>(rows: impl IntoIterator<Item = &'r T>, columns: &Columns<T>) -> Table {
+    within_width(table::table_of(rows, columns), 100)
 }
 
 /// A table of many narrow columns, as wide as it needs.

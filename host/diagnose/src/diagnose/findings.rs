@@ -28,6 +28,35 @@ pub enum Verdict {
     Unfit,
 }
 
+impl Verdict {
+    /// One word for it, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Nominal => "nominal",
+            Verdict::Adequate => "adequate",
+            Verdict::WrongValue => "wrong_value",
+            Verdict::Named => "named",
+            Verdict::Ambiguous => "ambiguous",
+            Verdict::Unexplained => "unexplained",
+            Verdict::Unfit => "unfit",
+        }
+    }
+}
+
+impl Diagnosis {
+    /// What was tried and not chosen: the smallest error on motions held out first, then what never
+    /// came that far.
+    pub fn tried(&self) -> Vec<&RuledOut> {
+        let held_out = |tried: &RuledOut| tried.held_out_error_rad.unwrap_or(f64::INFINITY);
+        let mut tried: Vec<&RuledOut> = self.ruled_out.iter().collect();
+        tried.sort_by(|a, b| {
+            let order = held_out(a).total_cmp(&held_out(b));
+            order.then(a.training_error_rad.total_cmp(&b.training_error_rad))
+        });
+        tried
+    }
+}
+
 /// How the search for explanations ended.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

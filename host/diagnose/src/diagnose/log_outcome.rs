@@ -125,7 +125,6 @@ impl LogOutcome {
         let values = effects.clone().flat_map(|effect| &effect.parameters);
         let was_simulated = diagnosis.verdict != Verdict::Unfit;
         let error = |rad: f64| finite(rad).filter(|_| was_simulated);
-        let name = serde_json::to_value(diagnosis.verdict).unwrap_or_default();
         let said = if was_simulated {
             headline(diagnosis)
         } else {
@@ -133,7 +132,7 @@ impl LogOutcome {
         };
         LogOutcome {
             key,
-            verdict: name.as_str().unwrap_or_default().to_string(),
+            verdict: diagnosis.verdict.name().to_string(),
             said,
             effects: effects.map(FittedEffect::address).collect(),
             values: values.chain(wrong).map(value).collect(),

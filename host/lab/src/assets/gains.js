@@ -40,9 +40,9 @@ const drawPoles = () => {
 };
 const table = (head, rows) => element("table", {},
   element("thead", {}, element("tr", {}, ...head.map((text, i) => element("th", {
-    textContent: text, className: i ? "number" : "" })))),
+    textContent: text, className: i ? "number" : "", scope: "col" })))),
   element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((text, i) => element(i ?
-    "td" : "th", { textContent: text, className: i ? "number" : "" }))))));
+    "td" : "th", { textContent: text, className: i ? "number" : "", scope: i ? "" : "row" }))))));
 const show = (said) => {
   poles = said.poles;
   drawPoles();
@@ -55,19 +55,11 @@ const show = (said) => {
     lines.push(["Largest change of an input by rounded gains",
       Math.max(...said.fixed.gain_error).toPrecision(3)]);
   }
-  if (said.margins) {
-    const { common, disk } = said.margins.inputs;
-    const bound = (value, digits, unit) => value === null ? "any" : value.toFixed(digits) + unit;
-    lines.push(["Gain margin of all inputs",
-      `${common.gain[0].toFixed(3)} to ${bound(common.gain[1], 3, "")}`]);
-    lines.push(["Delay margin", bound(common.delay_s && 1e3 * common.delay_s, 1, " ms")]);
-    const low = said.margins.inputs.low ? ": LOW" : "";
-    lines.push(["All inputs at once, each in its own way", `±${bound(disk.gain_db, 1, " dB")}, ` +
-      `±${(disk.phase_rad * 180 / Math.PI).toFixed(0)} deg${low}`]);
-  }
   if (said.omitted.length) lines.push(["Left out of the design, kept in the response",
     said.omitted.join(", ")]);
-  $("figures").replaceChildren(table(["Quantity", "Value"], lines));
+  $("figures").replaceChildren(table(["Quantity", "Value"], lines), ...said.margins.map((part) =>
+    typeof part === "string" ? element("p", { className: "note", textContent: part }) :
+      table(part[0], part.slice(1))));
   $("gain").replaceChildren(table(["Input", ...said.states], said.k.map((row, i) => [said.inputs[i],
     ...row.map((v) => v.toPrecision(4))])));
   const time = Float32Array.from(said.response.time_s);

@@ -1,7 +1,8 @@
 //! Rounds with a hidden effect: the one that is open, the score, the history.
 
 use super::{frame, in_mrad};
-use crate::output::number::{NONE, exact};
+use crate::challenge::score_rows;
+use crate::report::table::page_matrix;
 use crate::session::{LabSession, Round, RoundResult, SessionStore};
 use maud::{Markup, html};
 
@@ -58,24 +59,16 @@ fn open(number: u32, seed: u64) -> Markup {
 }
 
 fn scored(seed: u64, result: &RoundResult) -> Markup {
+    let values = result.values.iter();
+    let values = values.map(|(key, truth, estimate)| (key.as_str(), *truth, *estimate));
+    let errors = [result.true_error_rad, result.error_rad];
+    let rows = score_rows(result.hidden.as_deref(), &result.added, values, errors);
     html! {
         div.box #score data-solved=(result.solved) {
             h2 { "The round with seed " (seed) " is over" }
             @if result.solved { p.solved { "Solved: the model names what was hidden." } }
             @else { p.unsolved { "Not solved: the model does not name what was hidden." } }
-            table {
-                thead { tr { th { "What" } th { "True" } th { "Yours" } } }
-                tbody {
-                    tr { th { "effect" } td { (or_nothing(result.hidden.as_deref())) } td {
-                        (or_nothing(Some(&result.added.join(", ")))) } }
-                    @for (key, truth, estimate) in &result.values {
-                        tr { th { (key) } td { (exact(*truth)) } td {
-                            (estimate.map_or(NONE.into(), exact)) } }
-                    }
-                    tr { th { "error on the last log" } td { (in_mrad(Some(result.true_error_rad)))
-                        } td { (in_mrad(Some(result.error_rad))) } }
-                }
-            }
+            (page_matrix(&rows))
         }
     }
 }

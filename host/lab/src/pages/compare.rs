@@ -5,6 +5,7 @@ use crate::compare::{Failure, SignalError};
 use crate::output::number::{mrad, percent, short};
 use crate::plot::{Bar, Tone};
 use crate::reply::LabError;
+use crate::report::table::{columns_of, page_table};
 use crate::session::{ChosenWindow, LabSession, SavedSession, SessionEvaluation};
 use maud::{Markup, html};
 
@@ -192,28 +193,26 @@ fn signals(signals: &[SignalError], evaluation: &SessionEvaluation) -> Markup {
             evaluation.shown(signal.joint - 1).error_words(error)
         }
     };
-    html! {
-        div.scroll tabindex="0" { table {
-            thead { tr {
-                th { "Joint" } th.number { "RMS" } th.number { "Largest" } th.number { "Fit" }
-                th.number { "Floor" } th.number { "Squared error above floor" } th {
-                    "Tests of the residual" }
-            } }
-            tbody { @for signal in signals { tr {
-                td { (signal.joint) @if signal.beside_angle { ", rate" } }
-                td.number { (words(signal, signal.rms)) }
-                td.number { (words(signal, signal.largest)) }
-                td.number { (short(signal.fit_percent)) " %" }
-                td.number { (words(signal, signal.floor)) }
-                td.number { (percent(signal.share_above_floor)) }
-                td.tests-of-residual { @for test in &signal.tests {
+    let columns = columns_of::<SignalError>()
+        .text("Joint", SignalError::label)
+        .number("RMS", |signal| words(signal, signal.rms))
+        .number("Largest", |signal| words(signal, signal.largest))
+        .number("Fit", |signal| format!("{} %", short(signal.fit_percent)))
+        .number("Floor", |signal| words(signal, signal.floor))
+        .number("Squared error above floor", |signal| {
+            percent(signal.share_above_floor)
+        })
+        .drawn("Tests of the residual", |signal| {
+            html! {
+                @for test in &signal.tests {
                     span class=(if test.passed { "good" } else { "bad" }) title=(test.meaning) {
                         (test.name) @if test.passed { " passed" } @else { " not passed" } ". "
                     }
-                } }
-            } } }
-        } }
-    }
+                }
+            }
+        })
+        .class("tests-of-residual");
+    page_table(signals, &columns)
 }
 
 /// The error over ever longer runs; start states are fitted for each, so the page does not wait

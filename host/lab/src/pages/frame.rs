@@ -141,7 +141,7 @@ fn status(saved: &SavedSession, evaluation: Option<&SessionEvaluation>) -> Marku
 fn left_out(saved: &SavedSession) -> Markup {
     let files: Vec<String> = saved.left_out.iter().map(|log| log.name.clone()).collect();
     html! {
-        span.bad #left-out { "Without " (listed(&files)) ", which this model cannot read" }
+        span.bad #left-out { "Without " (listed(files)) ", which this model cannot read" }
     }
 }
 

@@ -93,7 +93,7 @@ fn shown(model: &Model) -> Markup {
             div.two {
                 div { h2 { "Poles" } canvas #poles role="img"
                     aria-label="Poles of the closed loop and the unit circle" {} }
-                div { h2 { "Figures" } div #figures aria-live="polite" {} }
+                div { h2 { "Figures" } div.scroll #figures tabindex="0" aria-live="polite" {} }
             }
             h2 { "Does it hold?" }
             div #verified aria-live="polite" { p.note { "Simulating the loop …" } }

@@ -10,6 +10,7 @@ use crate::fitting::Horizon;
 use crate::model::{Model, ParameterPath};
 use crate::output::number::{NONE, exact, short, unit};
 use crate::reply::LabError;
+use crate::report::table::{columns_of, page_table};
 use crate::session::{
     CardRole, ChosenWindow, LabSession, SavedCard, SavedDiagnosis, SavedProposal, SavedSession,
     SessionEvaluation, over, value_name,
@@ -235,20 +236,32 @@ fn cards(
 /// Which values to fit, each with what it is now, what is possible, and the bounds that it is kept
 /// in.
 fn fit_what(model: &Model) -> Markup {
-    let paths = own_paths(model);
-    let values = paths
-        .iter()
-        .filter_map(|path| Some((path, path.get(model)?)));
+    let values = own_paths(model).into_iter();
+    let values = values.filter_map(|path| Some((path, path.get(model)?)));
     let values = values.filter(|(_, value)| value.is_finite());
+    let columns = columns_of::<(ParameterPath, f64)>()
+        .drawn("Fit", |(path, _)| {
+            html! {
+                input type="checkbox" id={ "fit-" (path) } data-name=(path)
+                    checked[model.free.contains(path)];
+            }
+        })
+        .drawn("Value", |(path, _)| {
+            html! {
+                label for={ "fit-" (path) } { (value_name(&path.to_string())) }
+            }
+        })
+        .number("Now", |(_, value)| exact(*value))
+        .text("Unit", |(path, _)| unit(path.unit()).to_string())
+        .drawn("At least", |(path, _)| bound("low", path, model))
+        .class("number")
+        .drawn("At most", |(path, _)| bound("high", path, model))
+        .class("number");
     html! {
         details #fit-what {
             summary { "Choose what is fitted" }
             form data-send="fit" data-names {
-                div.scroll tabindex="0" { table {
-                    thead { tr { th { "Fit" } th { "Value" } th.number { "Now" } th { "Unit" }
-                        th.number { "At least" } th.number { "At most" } } }
-                    tbody { @for (path, value) in values { (fit_row(path, value, model)) } }
-                } }
+                (page_table(&values.collect::<Vec<_>>(), &columns))
                 p.note { "Bounds are written into the model: later fits and diagnoses heed them. \
                           Empty, a value may be whatever is possible, which stands there in grey." }
                 div.row { button data-work { "Fit what is ticked" } }
@@ -257,31 +270,16 @@ fn fit_what(model: &Model) -> Markup {
     }
 }
 
-/// A value that may be fitted.
-fn fit_row(path: &ParameterPath, value: f64, model: &Model) -> Markup {
-    let address = path.to_string();
-    let (lowest, highest) = path.possible();
+/// An end of the bounds that a value is kept in.
+fn bound(end: &str, path: &ParameterPath, model: &Model) -> Markup {
+    let of = |(low, high): (f64, f64)| if end == "low" { low } else { high };
     let own = model.bounds.iter().find(|(own, _)| own == path);
-    let [low, high] = [own.map(|(_, ends)| ends.0), own.map(|(_, ends)| ends.1)]
-        .map(|end| end.filter(|end| end.is_finite()));
-    let bound = |end: &str, own: Option<f64>, possible: f64| {
-        let said = value_name(&address);
-        html! {
-            td.number { input type="number" step="any" data-bound=(end) data-path=(address)
-                data-was=[own] value=[own] placeholder=(short(possible))
-                aria-label={ (said) " at " (if end == "low" { "least" } else { "most" }) }; }
-        }
-    };
+    let own = own.map(|(_, ends)| of(*ends)).filter(|end| end.is_finite());
+    let said = if end == "low" { "least" } else { "most" };
     html! {
-        tr {
-            td { input type="checkbox" id={ "fit-" (address) } data-name=(address)
-                checked[model.free.contains(path)]; }
-            td { label for={ "fit-" (address) } { (value_name(&address)) } }
-            td.number { (exact(value)) }
-            td { (unit(path.unit())) }
-            (bound("low", low, lowest))
-            (bound("high", high, highest))
-        }
+        input type="number" step="any" data-bound=(end) data-path=(path) data-was=[own] value=[own]
+            placeholder=(short(of(path.possible())))
+            aria-label={ (value_name(&path.to_string())) " at " (said) };
     }
 }
 

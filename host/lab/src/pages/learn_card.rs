@@ -89,7 +89,7 @@ fn title(card: &SavedCard) -> String {
     let effects = card.effects.iter().map(|name| effect_name(name));
     let values = card.values.iter();
     let values = values.map(|path| format!("another {}", value_name(path)));
-    listed(&effects.chain(values).collect::<Vec<_>>())
+    listed(effects.chain(values).collect())
 }
 
 fn evidence(card: &SavedCard, evaluation: &SessionEvaluation) -> String {

@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::output::number::hex;
 use crate::pages::gains as pages;
 use crate::reply::{Answer, LabError, data as reply, download, page, typed};
-use crate::report::{GainsReport, gains_page, margins_json, verification_text};
+use crate::report::{GainsReport, gains_page, margins_parts, verification_text};
 use crate::server::LabState;
 use crate::session::{LabSession, aside, in_degrees};
 use crate::study::{left_out, response, verify};
@@ -155,7 +155,7 @@ fn designed(model: &Model, made: &Provenance, asked: &GainsAsked) -> Result<Valu
             .collect::<Vec<_>>(),
         "inputs": design.inputs.iter().map(|signal| &signal.name).collect::<Vec<_>>(),
         "fixed": fixed,
-        "margins": margins_json(figures.as_ref())["margins"],
+        "margins": margins_parts(figures.as_ref(), &design),
         "omitted": omitted.map(|o| omitted_text(o, &design)).collect::<Vec<_>>(),
         "degrees": in_degrees(model),
         "response": {

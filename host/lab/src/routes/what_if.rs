@@ -79,7 +79,7 @@ impl TriedChange {
             format!("{} to {value}", value_name(address))
         });
         let set: Vec<String> = set.collect();
-        format!("set by hand: {}", listed(&set))
+        format!("set by hand: {}", listed(set))
     }
 
     fn paths(&self) -> Result<Vec<(ParameterPath, f64)>> {

@@ -3,7 +3,7 @@
 use super::evaluation::ShownUnit;
 use super::names::value_name;
 use crate::diagnose::words::error_line;
-use crate::diagnose::{Alternative, Diagnosis, FittedEffect, RuledOut, Verdict, WrongValue};
+use crate::diagnose::{Alternative, Diagnosis, FittedEffect, RuledOut, WrongValue};
 use crate::fitting::FittedValue;
 use crate::output::number::measured;
 use serde::{Deserialize, Serialize};
@@ -83,16 +83,11 @@ impl SavedDiagnosis {
         }
         let rivals = diagnosis.alternatives.iter();
         cards.extend(rivals.map(|rival| self::rival(rival, error.held_out)));
-        let mut ruled_out: Vec<&RuledOut> = diagnosis.ruled_out.iter().collect();
-        let key = |tried: &RuledOut| tried.held_out_error_rad.unwrap_or(f64::INFINITY);
-        ruled_out.sort_by(|a, b| {
-            let held_out = key(a).total_cmp(&key(b));
-            held_out.then(a.training_error_rad.total_cmp(&b.training_error_rad))
-        });
-        cards.extend(ruled_out.into_iter().take(MOST_RULED_OUT).map(tried));
+        let ruled_out = diagnosis.tried().into_iter();
+        cards.extend(ruled_out.take(MOST_RULED_OUT).map(tried));
         SavedDiagnosis {
             step,
-            verdict: verdict_name(diagnosis.verdict),
+            verdict: diagnosis.verdict.name().to_string(),
             summary: diagnosis.summary.clone(),
             next: diagnosis.next.clone(),
             warnings: diagnosis.warnings.clone(),
@@ -114,12 +109,6 @@ impl SavedDiagnosis {
         let lines = self.summary.iter_mut().filter(|line| **line == own);
         lines.for_each(|line| line.clone_from(&shown));
     }
-}
-
-/// The verdict's name in JSON.
-fn verdict_name(verdict: Verdict) -> String {
-    let name = serde_json::to_value(verdict).unwrap_or_default();
-    name.as_str().unwrap_or_default().to_string()
 }
 
 fn finite(value: f64) -> Option<f64> {

@@ -70,7 +70,7 @@ impl From<&BestSoFar> for JobBest {
         JobBest {
             name: match best.names.as_slice() {
                 [] => "the model as it is".into(),
-                names => listed(&names.iter().map(name).collect::<Vec<_>>()),
+                names => listed(names.iter().map(name).collect()),
             },
             before_rad: best.before_rad,
             error_rad: best.error_rad,

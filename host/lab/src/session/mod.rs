@@ -38,7 +38,7 @@ pub(super) use kept::{SavedProposal, model_sha256};
 pub(super) use names::{effect_name, effect_of, listed, value_name};
 pub(super) use propose::MOTION_FILE;
 pub(super) use round::{Round, RoundResult};
-pub(super) use saved::{ChosenWindow, SavedSession, SavedStep, SavedValue};
+pub(super) use saved::{ChosenWindow, SavedSession, SavedStep};
 pub(super) use store::SessionStore;
 pub(super) use work::{ChosenBounds, with_bounds};
 

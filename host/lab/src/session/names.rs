@@ -1,5 +1,6 @@
 //! Effects and values by names for people: "Coulomb friction at joint 1", "mass of link 1".
 
+pub use crate::diagnose::names::listed;
 use crate::effects::split_unit;
 use crate::effects::{Effect, named};
 use crate::model::ParameterPath;
@@ -46,15 +47,6 @@ pub fn value_name(address: &str) -> String {
     }
 }
 
-/// Names one after the other: "a, b and c".
-pub fn listed(names: &[String]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => one.clone(),
-        [others @ .., last] => format!("{} and {last}", others.join(", ")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,7 +67,5 @@ mod tests {
         }
         assert_eq!(effect_name("coulomb@2"), "Coulomb friction at joint 2");
         assert_eq!(effect_name("steam@1"), "steam@1");
-        let names = ["a", "b", "c"].map(String::from);
-        assert_eq!(listed(&names), "a, b and c");
     }
 }

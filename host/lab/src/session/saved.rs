@@ -147,6 +147,21 @@ impl From<&FittedValue> for SavedValue {
     }
 }
 
+impl From<&SavedValue> for FittedValue {
+    fn from(saved: &SavedValue) -> Self {
+        let key = saved.path.rsplit('.').next();
+        FittedValue {
+            path: saved.path.clone(),
+            key: key.unwrap_or_default().to_string(),
+            unit: saved.unit.clone(),
+            value: saved.value,
+            low: saved.low.unwrap_or(f64::NEG_INFINITY),
+            high: saved.high.unwrap_or(f64::INFINITY),
+            on_bound: saved.on_bound,
+        }
+    }
+}
+
 impl SavedStep {
     /// A model that a person brought or wrote.
     pub fn by_hand(title: impl Into<String>, toml: impl Into<String>) -> SavedStep {

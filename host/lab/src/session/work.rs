@@ -115,7 +115,7 @@ impl LabSession {
             report,
             &begun,
             SavedStep {
-                title: format!("{} added", listed(&each(names, effect_name))),
+                title: format!("{} added", listed(each(names, effect_name))),
                 toml,
                 command: Some(view.add_command(names)),
                 note: String::new(),
@@ -154,7 +154,7 @@ impl LabSession {
             report,
             &begun,
             SavedStep {
-                title: format!("{} fitted", listed(&each(&names, value_name))),
+                title: format!("{} fitted", listed(each(&names, value_name))),
                 toml,
                 command: Some(view.fit_command(named, bounds)),
                 note: String::new(),
@@ -203,7 +203,7 @@ impl LabSession {
             report,
             &begun,
             SavedStep {
-                title: format!("law added: {}", listed(&law.collect::<Vec<_>>())),
+                title: format!("law added: {}", listed(law.collect())),
                 toml,
                 command: Some(view.discover_command()),
                 note: String::new(),

@@ -56,6 +56,9 @@ pub fn mrad(value_rad: f64) -> String {
 /// As [`mrad`], with three digits at most behind the point, as columns that are compared have them.
 pub fn mrad_in_column(value_rad: f64) -> String {
     let value = 1e3 * value_rad;
+    if !value.is_finite() {
+        return short(value);
+    }
     let digits = match value.abs() {
         v if v >= 99.95 => 0,
         v if v >= 9.995 => 1,
@@ -171,6 +174,7 @@ mod tests {
         assert_eq!(exact(1.5e-9), "1.500e-9");
         assert_eq!(mrad_in_column(0.01234), "12.3");
         assert_eq!(mrad_in_column(1e-5), "0.010");
+        assert_eq!(mrad_in_column(f64::NAN), "–");
     }
 
     #[test]

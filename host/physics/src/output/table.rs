@@ -1,16 +1,11 @@
-//! Rows as a table for people, and as CSV.
+//! Tables for people: how wide they are, and where they break.
 
-use comfy_table::{
-    ColumnConstraint, ContentArrangement, Row, Table, TableComponent, Width, presets,
-};
+use comfy_table::{ColumnConstraint, ContentArrangement, Table, TableComponent, Width, presets};
 
 /// Longest word that is never broken.
 const MOST_UNBROKEN: usize = 40;
 /// Longest number with its interval that is never broken.
 const MOST_OF_NUMBER: usize = 28;
-
-/// A column: its heading, and what a row has under it.
-pub type TableColumn<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
 
 /// A table without frame, as wide as its text asks and at most as wide as the terminal.
 pub fn plain_table<'a>(header: impl IntoIterator<Item = &'a str>) -> Table {
@@ -21,27 +16,6 @@ pub fn plain_table<'a>(header: impl IntoIterator<Item = &'a str>) -> Table {
         .set_header(header)
         .remove_style(TableComponent::HorizontalLines)
         .remove_style(TableComponent::MiddleIntersections);
-    table
-}
-
-/// A plain table, a line for each of `rows`.
-pub fn table_of<'r, T: 'r>(
-    rows: impl IntoIterator<Item = &'r T>,
-    columns: &[TableColumn<T>],
-) -> Table {
-    let mut table = plain_table(columns.iter().map(|(heading, _)| *heading));
-    for row in rows {
-        table.add_row(columns.iter().map(|(_, cell)| cell(row)));
-    }
-    table
-}
-
-/// The table with this text in place of each row's cells.
-pub fn reworded(mut table: Table, text: impl Fn(&str) -> String) -> Table {
-    for row in table.row_iter_mut() {
-        let cells: Vec<String> = row.cell_iter().map(|cell| text(&cell.content())).collect();
-        *row = Row::from(cells);
-    }
     table
 }
 
@@ -81,20 +55,6 @@ fn word_lengths(cell: &str) -> Vec<usize> {
     } else {
         cell.split_whitespace().map(length).collect()
     }
-}
-
-/// CSV: the headings, then a line for each of `rows`. No cell holds a comma.
-pub fn csv_of<'r, T: 'r>(
-    rows: impl IntoIterator<Item = &'r T>,
-    columns: &[TableColumn<T>],
-) -> String {
-    let headings: Vec<&str> = columns.iter().map(|(heading, _)| *heading).collect();
-    let mut text = headings.join(",") + "\n";
-    for row in rows {
-        let cells: Vec<String> = columns.iter().map(|(_, cell)| cell(row)).collect();
-        text += &(cells.join(",") + "\n");
-    }
-    text
 }
 
 /// A cell that stays empty without a value.

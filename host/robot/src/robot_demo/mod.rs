@@ -17,6 +17,6 @@ mod run;
 
 pub use hidden::{HiddenRobot, RobotAnswer, RobotEffect};
 pub use learning::Learned;
-pub use page::html;
+pub use page::{effect_columns, html};
 pub use recording::{MOTIONS, PAYLOAD_KG, RecordedMotion};
 pub use run::{DemoStep, LIMIT_OPTIONS, RobotDemo, ScoredEffect, run};

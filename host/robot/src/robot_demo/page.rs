@@ -1,10 +1,11 @@
 //! A page that shows both attempts side by side.
 
-use super::run::RobotDemo;
+use super::run::{RobotDemo, ScoredEffect};
 use crate::deploy::rehearsal::{AttemptSample, BalanceAttempt, STANDS_S};
-use crate::output::number::exact;
+use crate::output::number::{NONE, exact};
 use crate::plot::{Chart, Curve, Tone};
-use crate::report::page::{Section, document, table};
+use crate::report::page::{Section, document};
+use crate::report::table::{Columns, columns_of, page_table};
 use maud::{Markup, html};
 
 /// Two pictures beside each other, their axes at one height however long their titles are, or below
@@ -52,7 +53,7 @@ pub fn html(demo: &RobotDemo) -> String {
                    recordings alone. A wide interval says that the effect is there and this value \
                    of it is hardly known: of a dead zone, what a command loses (the punch) shows, \
                    and the width below it does not.",
-            body: effects(demo),
+            body: page_table(&demo.effects, &effect_columns()),
         },
     ];
     document(&title, &header, &sections)
@@ -104,21 +105,16 @@ fn pair(demo: &RobotDemo, label: &str, curves: impl Fn(&BalanceAttempt) -> Vec<C
     }
 }
 
-fn effects(demo: &RobotDemo) -> Markup {
-    let headings = html! {
-        th { "Effect" } th { "Value" } th.number { "True" } th.number { "Estimated" }
-        th.number { "95 % interval" }
+/// The columns of effects that were hidden.
+pub fn effect_columns<'a>() -> Columns<'a, ScoredEffect> {
+    let estimate = |none: &'static str| {
+        move |effect: &ScoredEffect| effect.estimate.map_or(none.to_string(), exact)
     };
-    let rows = html! {
-        @for effect in &demo.effects {
-            tr {
-                td { (effect.address) }
-                td { (effect.key) }
-                td.number { (exact(effect.true_value)) }
-                td.number { (effect.estimate.map_or("not found".to_string(), exact)) }
-                td.number { (effect.interval_words()) }
-            }
-        }
-    };
-    table(&headings, &rows)
+    columns_of::<ScoredEffect>()
+        .text("Hidden", |effect| effect.address.clone())
+        .text("Value", |effect| effect.key.clone())
+        .number("True", |effect| exact(effect.true_value))
+        .number("Estimated", estimate(NONE))
+        .drawn_as(move |effect| html! { (estimate("not found")(effect)) })
+        .number("95 % interval", ScoredEffect::interval_words)
 }

@@ -28,4 +28,4 @@ pub use result::{Comparison, Failure, HorizonError, ResidualTest, SignalError, T
 pub use run::fit_percent;
 pub use run::{compare, compare_all};
 pub use sample_features::speed_rad_s;
-pub use text::{text, waterfall};
+pub use text::{LEGEND as COMPARISON_LEGEND, comparison_rows, text, waterfall};

@@ -55,6 +55,14 @@ pub struct SignalError {
     pub tests: Vec<ResidualTest>,
 }
 
+impl SignalError {
+    /// "1", "1, rate": the joint, and that its rate is meant where its angle is measured, too.
+    pub fn label(&self) -> String {
+        let of_rate = if self.beside_angle { ", rate" } else { "" };
+        format!("{}{of_rate}", self.joint)
+    }
+}
+
 /// A test of the residual at 99 %.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResidualTest {
@@ -168,6 +176,12 @@ impl Comparison {
         let quantity = self.quantity();
         let signals = self.signals.iter();
         signals.filter(move |s| s.quantity.counts_in(quantity))
+    }
+
+    /// Root-mean-square of an error over them; they share their samples.
+    pub fn pooled_rms(&self, of: fn(&SignalError) -> f64) -> f64 {
+        let squares: f64 = self.pooled().map(|signal| of(signal).powi(2)).sum();
+        (squares / self.pooled().count().max(1) as f64).sqrt()
     }
 
     /// What errors over all joints are of.

@@ -3,9 +3,8 @@
 use super::closed_loop::closed_loop_text;
 use super::result::{Comparison, SignalError};
 use crate::fitting::in_windows;
-use crate::model::{JointNames, MeasuredSignal};
+use crate::model::JointNames;
 use crate::output::number::{NONE, mrad_in_column};
-use crate::output::table::reworded;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::fmt::Write as _;
 
@@ -18,8 +17,10 @@ pub fn text(comparisons: &[Comparison], names: &JointNames) -> String {
     let Some((last, others)) = comparisons.split_last() else {
         return String::new();
     };
-    let table = reworded(table(comparisons), |cell| names.in_text(cell));
-    let mut text = format!("{table}\n{LEGEND}\n");
+    let mut rows = comparison_rows(comparisons);
+    let cells = rows.iter_mut().skip(1).flatten();
+    cells.for_each(|cell| *cell = names.in_text(cell));
+    let mut text = format!("{}\n{LEGEND}\n", aligned(&rows));
     if !others.is_empty() {
         let _ = write!(
             text,
@@ -56,17 +57,18 @@ pub fn text(comparisons: &[Comparison], names: &JointNames) -> String {
     names.in_text(&text)
 }
 
-const LEGEND: &str = "rms: typical error; floor: what noise and resolution alone leave; fit: 100 % is a perfect model";
+/// What a comparison's table tells, below it.
+pub const LEGEND: &str = "rms: typical error; floor: what noise and resolution alone leave; fit: 100 % is a perfect model";
 const NOWHERE: &str = "no condition holds more than its share of the error";
 
 /// One bar per model, the floor last: what each step gained, and what there is left to gain.
 pub fn waterfall(comparisons: &[Comparison]) -> String {
     let mut steps: Vec<(&str, f64)> = comparisons
         .iter()
-        .map(|c| (c.model.as_str(), together(c, |s| s.rms)))
+        .map(|c| (c.model.as_str(), c.pooled_rms(|s| s.rms)))
         .collect();
     if let Some(last) = comparisons.last() {
-        steps.push(("floor", together(last, |s| s.floor)));
+        steps.push(("floor", last.pooled_rms(|s| s.floor)));
     }
     let most = steps.iter().map(|step| step.1).fold(0.0, f64::max);
     let width = steps.iter().map(|s| s.0.chars().count()).max().unwrap_or(0);
@@ -83,52 +85,34 @@ pub fn waterfall(comparisons: &[Comparison]) -> String {
     text
 }
 
-/// Root-mean-square over the joints.
-fn together(comparison: &Comparison, of: fn(&SignalError) -> f64) -> f64 {
-    let squares: f64 = comparison.pooled().map(|s| of(s).powi(2)).sum();
-    (squares / comparison.pooled().count().max(1) as f64).sqrt()
-}
-
 fn of_joint(comparison: &Comparison, signal: &SignalError) -> String {
     if comparison.signals.len() > 1 || !comparison.unobserved.is_empty() {
-        format!(", joint {}{}", signal.joint, of_rate(signal.beside_angle))
+        format!(", joint {}", signal.label())
     } else {
         String::new()
     }
 }
 
-/// Behind a joint, where its rate is meant and not its angle.
-fn of_rate(beside_angle: bool) -> &'static str {
-    if beside_angle { ", rate" } else { "" }
-}
-
-/// A table whose columns but the first hold numbers.
-pub(super) fn aligned(header: &[String], rows: &[Vec<String>]) -> Table {
-    let mut table = empty_table();
-    table.set_header(header).add_rows(rows);
-    align(&mut table);
-    table
-}
-
-fn empty_table() -> Table {
+/// A table of rows whose first are the headings; its columns but the first hold numbers.
+pub(super) fn aligned(rows: &[Vec<String>]) -> Table {
+    let mut rows = rows.iter();
     let mut table = Table::new();
     table
         .load_preset(presets::ASCII_MARKDOWN)
-        .set_content_arrangement(ContentArrangement::Disabled);
-    table
-}
-
-/// Numbers under each other.
-fn align(table: &mut Table) {
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(rows.next().into_iter().flatten())
+        .add_rows(rows);
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
+    table
 }
 
-fn table(comparisons: &[Comparison]) -> Table {
-    let mut table = empty_table();
-    let names = comparisons.iter().map(|c| c.model.clone());
-    table.set_header(std::iter::once(String::new()).chain(names));
+/// Models side by side: a header (nothing, the models' names), then a row per figure that begins
+/// with its name and unit.
+pub fn comparison_rows(comparisons: &[Comparison]) -> Vec<Vec<String>> {
+    let mut table = Vec::new();
+    row(&mut table, comparisons, "", |c| c.model.clone());
     row(&mut table, comparisons, "runs uncorrected", |c| {
         in_windows(&c.windows)
     });
@@ -162,7 +146,6 @@ fn table(comparisons: &[Comparison]) -> Table {
             found.map_or("-".to_string(), |h| mrad_in_column(h.rms))
         });
     }
-    align(&mut table);
     table
 }
 
@@ -170,21 +153,21 @@ fn table(comparisons: &[Comparison]) -> Table {
 type Cell = fn(&SignalError) -> String;
 
 /// The rows of a joint, or of the rate that it has beside its angle.
-fn signal_rows(table: &mut Table, comparisons: &[Comparison], wanted: (usize, bool)) {
+fn signal_rows(table: &mut Vec<Vec<String>>, comparisons: &[Comparison], wanted: (usize, bool)) {
     fn own(comparison: &Comparison, wanted: (usize, bool)) -> Option<&SignalError> {
         let mut signals = comparison.signals.iter();
         signals.find(|s| (s.joint, s.beside_angle) == wanted)
     }
+    let Some(signal) = comparisons.iter().find_map(|c| own(c, wanted)) else {
+        return;
+    };
     let named = |c: &Comparison| c.signals.len() > 1 || !c.unobserved.is_empty();
     let prefix = if comparisons.iter().any(named) {
-        format!("joint {}{}: ", wanted.0, of_rate(wanted.1))
+        format!("joint {}: ", signal.label())
     } else {
         String::new()
     };
-    let quantity = comparisons
-        .iter()
-        .find_map(|c| Some(own(c, wanted)?.quantity));
-    let milli = quantity.map_or("mrad", MeasuredSignal::milli);
+    let milli = signal.quantity.milli();
     let lines: [(&str, Cell); 6] = [
         ("rms, mrad", |s| mrad_in_column(s.rms)),
         ("largest, mrad", |s| mrad_in_column(s.largest)),
@@ -213,13 +196,13 @@ fn signal_rows(table: &mut Table, comparisons: &[Comparison], wanted: (usize, bo
 }
 
 fn row(
-    table: &mut Table,
+    table: &mut Vec<Vec<String>>,
     comparisons: &[Comparison],
     label: &str,
     cell: impl Fn(&Comparison) -> String,
 ) {
     let cells = comparisons.iter().map(cell);
-    table.add_row(std::iter::once(label.to_string()).chain(cells));
+    table.push(std::iter::once(label.to_string()).chain(cells).collect());
 }
 
 fn short(seconds: f64) -> String {

@@ -2,6 +2,7 @@
 
 use crate::cli::{Console, ExitStatus, show::table_of};
 use handstand::Result;
+use handstand::report::table::columns_of;
 use handstand_shared::control_table::Item;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -40,15 +41,12 @@ pub fn report(
         console.data(data)?;
         return Ok(ExitStatus::Done);
     }
-    let table = table_of(
-        changes,
-        &[
-            ("Id", &|change| change.id.to_string()),
-            ("Register", &|change| change.register.name.to_string()),
-            ("Before", &|change| change.before.to_string()),
-            (after, &|change| change.code.to_string()),
-        ],
-    );
+    let columns = columns_of::<RegisterChange>()
+        .text("Id", |change| change.id.to_string())
+        .text("Register", |change| change.register.name.to_string())
+        .text("Before", |change| change.before.to_string())
+        .text(after, |change| change.code.to_string());
+    let table = table_of(changes, &columns);
     if !changes.is_empty() {
         console.print(&table.to_string())?;
     }

@@ -9,7 +9,7 @@ use crate::cli::show::table_of;
 use crate::cli::{Console, ExitStatus};
 use handstand::Result;
 use handstand::link::{Session, cause_words, condition_words, fault_log};
-use handstand::output::table::TableColumn;
+use handstand::report::table::columns_of;
 use handstand_shared::message::FaultEntry;
 use serde::Serialize;
 
@@ -54,15 +54,14 @@ pub fn run(args: &FaultLogArgs, console: &Console) -> Result<ExitStatus> {
 }
 
 fn text(faults: &[LoggedFault]) -> String {
-    let columns: &[TableColumn<LoggedFault>] = &[
-        ("Start", &|fault| fault.start.to_string()),
-        ("After", &|fault| format!("{:.2} s", fault.time_s)),
-        ("Torque went off, for", &|fault| fault.cause.to_string()),
-        ("It was", &|fault| fault.condition.to_string()),
-    ];
+    let columns = columns_of::<LoggedFault>()
+        .text("Start", |fault| fault.start.to_string())
+        .text("After", |fault| format!("{:.2} s", fault.time_s))
+        .text("Torque went off, for", |fault| fault.cause.to_string())
+        .text("It was", |fault| fault.condition.to_string());
     if faults.is_empty() {
         "No fault is kept.".to_string()
     } else {
-        table_of(faults, columns).to_string()
+        table_of(faults, &columns).to_string()
     }
 }

@@ -7,7 +7,7 @@ use crate::cli::{Console, ExitStatus, interrupt::Interrupt};
 use handstand::Result;
 use handstand::link::record::ServoSample;
 use handstand::link::{Protocol, ServoError, ServoResult, Servos};
-use handstand::output::table::TableColumn;
+use handstand::report::table::columns_of;
 use handstand_shared::control_table::PRESENT_POSITION;
 use serde::Serialize;
 use std::time::Duration;
@@ -129,21 +129,20 @@ impl ServoReading {
 }
 
 fn text(seen: &[ServoReading]) -> String {
-    let columns: &[TableColumn<ServoReading>] = &[
-        ("Id", &|s| s.id.to_string()),
-        ("Position", &|s| or_dash(s.position_rad, degrees)),
-        ("Speed", &|s| {
+    let columns = columns_of::<ServoReading>()
+        .text("Id", |s| s.id.to_string())
+        .text("Position", |s| or_dash(s.position_rad, degrees))
+        .text("Speed", |s| {
             or_dash(s.speed_rad_s, |w| format!("{w:.2} rad/s"))
-        }),
-        ("Load", &|s| match s.current_a {
+        })
+        .text("Load", |s| match s.current_a {
             Some(current_a) => format!("{current_a:.3} A"),
             None => or_dash(s.load_share, |share| format!("{:.0} %", 100.0 * share)),
-        }),
-        ("Supply", &|s| or_dash(s.supply_v, |v| format!("{v:.1} V"))),
-        ("Temp", &|s| {
+        })
+        .text("Supply", |s| or_dash(s.supply_v, |v| format!("{v:.1} V")))
+        .text("Temp", |s| {
             or_dash(s.temperature_celsius, |t| format!("{t} C"))
-        }),
-        ("Error flags", &|s| s.error_flags.join(", ")),
-    ];
-    table_of(seen, columns).to_string()
+        })
+        .text("Error flags", |s| s.error_flags.join(", "));
+    table_of(seen, &columns).to_string()
 }

@@ -4,7 +4,8 @@ use crate::cli::port::{AnyLink, Port};
 use crate::cli::{Console, ExitStatus, show::table_of};
 use handstand::link::{Model, OneMode, OneServo, ServoError, Servos};
 use handstand::model::suggest::suggest;
-use handstand::output::table::{TableColumn, or_empty};
+use handstand::output::table::or_empty;
+use handstand::report::table::columns_of;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Access, Item, Register, x};
 use serde::Serialize;
@@ -79,14 +80,13 @@ pub fn read(args: &ReadArgs, console: &Console) -> Result<ExitStatus> {
         contents.push(content(&mut servos, args.id, item, code)?);
     }
     console.result(&contents, || {
-        let columns: &[TableColumn<RegisterContent>] = &[
-            ("Address", &|c| c.address.to_string()),
-            ("Register", &|c| c.register.to_string()),
-            ("Code", &|c| c.code.to_string()),
-            ("Means", &|c| c.means.clone()),
-            ("Default", &|c| or_empty(c.default)),
-        ];
-        table_of(&contents, columns).to_string()
+        let columns = columns_of::<RegisterContent>()
+            .text("Address", |c| c.address.to_string())
+            .text("Register", |c| c.register.to_string())
+            .text("Code", |c| c.code.to_string())
+            .text("Means", |c| c.means.clone())
+            .text("Default", |c| or_empty(c.default));
+        table_of(&contents, &columns).to_string()
     })?;
     Ok(ExitStatus::Done)
 }

@@ -8,7 +8,7 @@ use crate::cli::show::{or_dash, table_of};
 use crate::cli::{Console, ExitStatus};
 use handstand::link::record::no_response;
 use handstand::link::{Model, Protocol, ServoError, ServoResult, Servos, StatusError, id_ranges};
-use handstand::output::table::TableColumn;
+use handstand::report::table::columns_of;
 use handstand::{Error, Result};
 use handstand_shared::control_table::{self as ct, Item, Quantity, x};
 use serde::Serialize;
@@ -56,29 +56,28 @@ pub fn run(args: &ScanArgs, console: &Console) -> Result<ExitStatus> {
 }
 
 fn table(found: &[FoundServo]) -> String {
-    let columns: &[TableColumn<FoundServo>] = &[
-        ("Id", &|s| s.id.to_string()),
-        ("Protocol", &|s| s.protocol.to_string()),
-        ("Model", &|s| {
+    let columns = columns_of::<FoundServo>()
+        .text("Id", |s| s.id.to_string())
+        .text("Protocol", |s| s.protocol.to_string())
+        .text("Model", |s| {
             or_dash(s.model, |number| model(s.protocol, number))
-        }),
-        ("Firmware", &|s| {
+        })
+        .text("Firmware", |s| {
             or_dash(s.firmware, |version| version.to_string())
-        }),
-        ("Return delay", &|s| {
+        })
+        .text("Return delay", |s| {
             or_dash(s.return_delay_us, |us| format!("{us} us"))
-        }),
-        ("Status level", &|s| {
+        })
+        .text("Status level", |s| {
             or_dash(s.status_level, |level| level.to_string())
-        }),
-        ("Position", &|s| or_dash(s.position_rad, degrees)),
-        ("Supply", &|s| or_dash(s.supply_v, |v| format!("{v:.1} V"))),
-        ("Temp", &|s| {
+        })
+        .text("Position", |s| or_dash(s.position_rad, degrees))
+        .text("Supply", |s| or_dash(s.supply_v, |v| format!("{v:.1} V")))
+        .text("Temp", |s| {
             or_dash(s.temperature_celsius, |c| format!("{c} C"))
-        }),
-        ("Error flags", &|s| s.error_flags.join(", ")),
-    ];
-    table_of(found, columns).to_string()
+        })
+        .text("Error flags", |s| s.error_flags.join(", "));
+    table_of(found, &columns).to_string()
 }
 
 /// An angle for people.

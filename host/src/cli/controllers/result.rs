@@ -2,8 +2,9 @@
 
 use super::ControllerTrial;
 use crate::cli::show;
-use handstand::output::table::{TableColumn, csv_of, or_empty};
+use handstand::output::table::or_empty;
 use handstand::plot::heat_map;
+use handstand::report::table::{columns_of, csv_of};
 use handstand::study::LoopCondition;
 use handstand::synth::controllers::ControllerDesign;
 
@@ -27,21 +28,20 @@ pub fn text(
         ));
     }
     let degrees = |rad: Option<f64>| or_dash(rad.map(f64::to_degrees));
-    let columns: &[TableColumn<ControllerTrial>] = &[
-        ("Controller", &|t| t.controller.to_string()),
-        ("stabilised %", &|t| percent(t.stabilised)),
-        ("fallen %", &|t| percent(t.fallen)),
-        ("rms deg", &|t| degrees(t.rms_angle_rad)),
-        ("limit cycle deg", &|t| degrees(t.limit_cycle_rad)),
-        ("rms N m", &|t| or_dash(t.rms_torque_nm)),
-    ];
+    let columns = columns_of::<ControllerTrial>()
+        .text("Controller", |t| t.controller.to_string())
+        .text("stabilised %", |t| percent(t.stabilised))
+        .text("fallen %", |t| percent(t.fallen))
+        .text("rms deg", |t| degrees(t.rms_angle_rad))
+        .text("limit cycle deg", |t| degrees(t.limit_cycle_rad))
+        .text("rms N m", |t| or_dash(t.rms_torque_nm));
     // Each by itself would fill pages; the file has them all.
     let few = conditions.len() <= 2;
     for condition in conditions.iter().filter(|c| few || c.id.starts_with("all")) {
         let own = trials
             .iter()
             .filter(|trial| trial.condition == condition.id);
-        let table = show::table_of(own, columns);
+        let table = show::table_of(own, &columns);
         parts.push(format!(
             "{}, of those stabilised:\n{table}",
             condition.title
@@ -105,17 +105,16 @@ pub fn plot(
 
 /// Everything, a line per trial.
 pub fn csv(trials: &[ControllerTrial]) -> String {
-    let columns: &[TableColumn<ControllerTrial>] = &[
-        ("controller", &|t| t.controller.to_string()),
-        ("condition", &|t| t.condition.to_string()),
-        ("robots", &|t| t.robots.to_string()),
-        ("stabilised", &|t| t.stabilised.to_string()),
-        ("fallen", &|t| t.fallen.to_string()),
-        ("rms_angle_rad", &|t| or_empty(t.rms_angle_rad)),
-        ("limit_cycle_rad", &|t| or_empty(t.limit_cycle_rad)),
-        ("rms_torque_nm", &|t| or_empty(t.rms_torque_nm)),
-        ("region_rad", &|t| or_empty(t.region_rad)),
-        ("region_open", &|t| or_empty(t.region_open)),
-    ];
-    csv_of(trials, columns)
+    let columns = columns_of::<ControllerTrial>()
+        .text("controller", |t| t.controller.to_string())
+        .text("condition", |t| t.condition.to_string())
+        .text("robots", |t| t.robots.to_string())
+        .text("stabilised", |t| t.stabilised.to_string())
+        .text("fallen", |t| t.fallen.to_string())
+        .text("rms_angle_rad", |t| or_empty(t.rms_angle_rad))
+        .text("limit_cycle_rad", |t| or_empty(t.limit_cycle_rad))
+        .text("rms_torque_nm", |t| or_empty(t.rms_torque_nm))
+        .text("region_rad", |t| or_empty(t.region_rad))
+        .text("region_open", |t| or_empty(t.region_open));
+    csv_of(trials, &columns)
 }

@@ -2,8 +2,8 @@
 
 use crate::cli::show::table_of;
 use handstand::deploy::{EffectUse, ModeLimit, ObserverLoop};
-use handstand::output::table::TableColumn;
 use handstand::report::input_margins_text;
+use handstand::report::table::columns_of;
 
 /// Lasting torque whose lean is said, N m.
 const TORQUE_NM: f64 = 0.01;
@@ -11,19 +11,16 @@ const TORQUE_NM: f64 = 0.01;
 /// A line for each unstable mode.
 pub fn limits_table(limits: &[ModeLimit]) -> String {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let columns: &[TableColumn<ModeLimit>] = &[
-        ("Unstable mode", &|l| format!("{:.1} /s", l.pole_per_s)),
-        ("Grows until an answer acts", &|l| {
+    let columns = columns_of::<ModeLimit>()
+        .text("Unstable mode", |l| format!("{:.1} /s", l.pole_per_s))
+        .text("Grows until an answer acts", |l| {
             format!("x {:.2} in {:.1} ms", l.growth, 1e3 * l.answer_s)
-        }),
-        ("1 deg, of what is recoverable", &|l| {
-            percent(l.degree_share)
-        }),
-        ("Half a sensor step, when answered", &|l| {
+        })
+        .text("1 deg, of what is recoverable", |l| percent(l.degree_share))
+        .text("Half a sensor step, when answered", |l| {
             percent(l.half_step_share)
-        }),
-    ];
-    table_of(limits, columns).to_string()
+        });
+    table_of(limits, &columns).to_string()
 }
 
 /// Margins of the observer's loop, and where a lasting torque on the bar leaves the robot.
@@ -46,10 +43,9 @@ pub fn observer_text(of: &ObserverLoop) -> String {
 
 /// A line for each effect of a model: where its plan has it.
 pub fn uses_table(uses: &[EffectUse]) -> String {
-    let columns: &[TableColumn<EffectUse>] = &[
-        ("Of the model", &|used| used.effect.clone()),
-        ("In the plan", &|used| used.place.name().to_string()),
-        ("How", &|used| used.how.clone()),
-    ];
-    table_of(uses, columns).to_string()
+    let columns = columns_of::<EffectUse>()
+        .text("Of the model", |used| used.effect.clone())
+        .text("In the plan", |used| used.place.name().to_string())
+        .text("How", |used| used.how.clone());
+    table_of(uses, &columns).to_string()
 }

@@ -3,7 +3,7 @@
 use super::Data;
 use crate::cli::show::{self, ends, known};
 use handstand::output::number::exact;
-use handstand::output::table::TableColumn;
+use handstand::report::table::columns_of;
 use handstand::sysid::{
     Estimate, FittedModel, IntervalEstimate, Pole, Record, TriedStructure, dynamics,
     transfer_function,
@@ -76,30 +76,29 @@ fn table(trials: &[TriedStructure], chosen: Option<usize>) -> String {
         None => "-".to_string(),
     };
     let kept = |k: usize| if Some(k) == chosen { "kept" } else { "" };
-    let columns: &[TableColumn<(usize, &TriedStructure, &FittedModel)>] = &[
-        ("Orders", &|(_, trial, _)| trial.structure.to_string()),
-        ("p", &|(_, trial, _)| trial.structure.count().to_string()),
-        ("Error", &|(.., fitted)| exact(fitted.validation.error_rms)),
-        ("Fit", &|(.., fitted)| {
+    let columns = columns_of::<(usize, &TriedStructure, &FittedModel)>()
+        .text("Orders", |(_, trial, _)| trial.structure.to_string())
+        .text("p", |(_, trial, _)| trial.structure.count().to_string())
+        .text("Error", |(.., fitted)| exact(fitted.validation.error_rms))
+        .text("Fit", |(.., fitted)| {
             percent(fitted.validation.predicted_fit_percent)
-        }),
-        ("Free fit", &|(.., fitted)| {
+        })
+        .text("Free fit", |(.., fitted)| {
             percent(fitted.validation.simulated_fit_percent)
-        }),
-        ("+AIC", &|(.., fitted)| {
+        })
+        .text("+AIC", |(.., fitted)| {
             format!("{:.1}", fitted.estimate.aic() - least_aic)
-        }),
-        ("+BIC", &|(.., fitted)| {
+        })
+        .text("+BIC", |(.., fitted)| {
             format!("{:.1}", fitted.estimate.bic() - least_bic)
-        }),
-        ("White", &|(.., fitted)| passed(fitted, 0)),
-        ("Indep.", &|(.., fitted)| passed(fitted, 1)),
-        ("", &|(k, ..)| kept(*k).to_string()),
-    ];
+        })
+        .text("White", |(.., fitted)| passed(fitted, 0))
+        .text("Indep.", |(.., fitted)| passed(fitted, 1))
+        .text("", |(k, ..)| kept(*k).to_string());
     let mut text = format!(
         "{}\nOn what was held out: RMS error and fit one step ahead, fit from the input alone, \
          residual tests. AIC and BIC\nof the fit, above the least.",
-        show::table_of(&rows, columns)
+        show::table_of(&rows, &columns)
     );
     let failed = trials.iter().filter(|trial| trial.outcome.is_err()).count();
     if left_out > 0 || failed > 0 {
@@ -115,12 +114,11 @@ fn percent(percent: f64) -> String {
 fn model(data: &Data, fitted: &FittedModel) -> String {
     let estimate = &fitted.estimate;
     let (model, structure) = (&estimate.model, &estimate.structure);
-    let columns: &[TableColumn<(String, IntervalEstimate)>] = &[
-        ("Coefficient", &|(name, _)| name.clone()),
-        ("Value", &|(_, known)| exact(known.value)),
-        ("95 % interval", &|(_, known)| ends(known)),
-    ];
-    let coefficients = show::table_of(&estimate.coefficients(), columns);
+    let columns = columns_of::<(String, IntervalEstimate)>()
+        .text("Coefficient", |(name, _)| name.clone())
+        .text("Value", |(_, known)| exact(known.value))
+        .text("95 % interval", |(_, known)| ends(known));
+    let coefficients = show::table_of(&estimate.coefficients(), &columns);
     let dynamics = dynamics(estimate, data.ts_s);
     let mut lines = vec![
         format!("{structure} has the transfer function"),

@@ -12,8 +12,9 @@ use crate::cli::gains_choice::GainsChoice;
 use crate::cli::show::{self, or_dash, table, table_of};
 use crate::cli::{Console, ExitStatus};
 use handstand::output::number::exact;
-use handstand::output::table::{TableColumn, csv_of, or_empty};
+use handstand::output::table::or_empty;
 use handstand::report::sweep_svg;
+use handstand::report::table::{columns_of, csv_of};
 use handstand::study::{Figures, Level, Levels, Quantity, Study, Sweep, quantity, sweep, sweeps};
 use handstand::synth::controllers::{DESIGNS, design};
 use handstand::{Error, Result, output};
@@ -178,20 +179,19 @@ fn shown((quantity, levels): Swept, ran: &Sweep) -> String {
     };
     let share = |level: &Level, of: fn(&Figures) -> String| or_dash(level.figures.as_ref(), of);
     let degrees = |rad: f64| format!("{:.1}", rad.to_degrees());
-    let columns: &[TableColumn<Level>] = &[
-        (&level, &|l| l.label.clone()),
-        ("stabilised", &|l| share(l, |f| percent(f.stabilised_share))),
-        ("95 % interval", &|l| share(l, stabilised_interval)),
-        ("tilt, deg", &|l| or_dash(l.tilt_border_rad, degrees)),
-        ("rms, deg", &|l| {
+    let columns = columns_of::<Level>()
+        .text(level, |l| l.label.clone())
+        .text("stabilised", |l| share(l, |f| percent(f.stabilised_share)))
+        .text("95 % interval", |l| share(l, stabilised_interval))
+        .text("tilt, deg", |l| or_dash(l.tilt_border_rad, degrees))
+        .text("rms, deg", |l| {
             figure(l, |f| f.rms_angle_rad.map(f64::to_degrees))
-        }),
-        ("cycle, deg", &|l| {
+        })
+        .text("cycle, deg", |l| {
             figure(l, |f| f.limit_cycle_rad.map(f64::to_degrees))
-        }),
-        ("torque, N m", &|l| figure(l, |f| f.rms_torque_nm)),
-        ("settles, s", &|l| figure(l, |f| f.settle_s)),
-    ];
+        })
+        .text("torque, N m", |l| figure(l, |f| f.rms_torque_nm))
+        .text("settles, s", |l| figure(l, |f| f.settle_s));
     let refused = ran.levels.iter().filter_map(|level| {
         let why = level.refused.as_ref()?;
         Some(format!("{}: no controller, {why}", level.label))
@@ -201,7 +201,7 @@ fn shown((quantity, levels): Swept, ran: &Sweep) -> String {
     let refused: Vec<String> = refused.chain(held).collect();
     format!(
         "{}\n{}\n",
-        table_of(&ran.levels, columns),
+        table_of(&ran.levels, &columns),
         refused.join("\n")
     )
 }
@@ -219,23 +219,22 @@ fn csv(ran: &Sweep) -> String {
     let figure = |level: &Level, of: fn(&Figures) -> Option<f64>| {
         or_empty(level.figures.as_ref().and_then(of))
     };
-    let columns: &[TableColumn<Level>] = &[
-        ("level", &|l| l.level.to_string()),
-        ("unit", &|_| ran.unit.to_string()),
-        ("runs", &|l| figure(l, |f| Some(f.runs as f64))),
-        ("stabilised", &|l| figure(l, |f| Some(f.stabilised as f64))),
-        ("stabilised_share", &|l| {
+    let columns = columns_of::<Level>()
+        .text("level", |l| l.level.to_string())
+        .text("unit", |_| ran.unit.to_string())
+        .text("runs", |l| figure(l, |f| Some(f.runs as f64)))
+        .text("stabilised", |l| figure(l, |f| Some(f.stabilised as f64)))
+        .text("stabilised_share", |l| {
             figure(l, |f| Some(f.stabilised_share))
-        }),
-        ("stabilised_low", &|l| figure(l, |f| Some(f.stabilised_low))),
-        ("stabilised_high", &|l| {
+        })
+        .text("stabilised_low", |l| figure(l, |f| Some(f.stabilised_low)))
+        .text("stabilised_high", |l| {
             figure(l, |f| Some(f.stabilised_high))
-        }),
-        ("tilt_border_rad", &|l| or_empty(l.tilt_border_rad)),
-        ("rms_angle_rad", &|l| figure(l, |f| f.rms_angle_rad)),
-        ("rms_torque_nm", &|l| figure(l, |f| f.rms_torque_nm)),
-        ("limit_cycle_rad", &|l| figure(l, |f| f.limit_cycle_rad)),
-        ("settle_s", &|l| figure(l, |f| f.settle_s)),
-    ];
-    csv_of(&ran.levels, columns)
+        })
+        .text("tilt_border_rad", |l| or_empty(l.tilt_border_rad))
+        .text("rms_angle_rad", |l| figure(l, |f| f.rms_angle_rad))
+        .text("rms_torque_nm", |l| figure(l, |f| f.rms_torque_nm))
+        .text("limit_cycle_rad", |l| figure(l, |f| f.limit_cycle_rad))
+        .text("settle_s", |l| figure(l, |f| f.settle_s));
+    csv_of(&ran.levels, &columns)
 }

@@ -2,8 +2,8 @@
 
 use crate::cli::{Console, show::table_of};
 use handstand::output::number::exact;
-use handstand::output::table::TableColumn;
 use handstand::report::monte_carlo_svg;
+use handstand::report::table::columns_of;
 use handstand::study::{FigureQuantiles, Influence, Merged, Summary};
 use handstand::{Error, Result, output};
 use serde_json::json;
@@ -50,12 +50,11 @@ fn shown(summary: &Summary) -> String {
         Some(_) => "never".to_string(),
         None => "–".to_string(),
     };
-    let figures: &[TableColumn<FigureQuantiles>] = &[
-        ("Of the stabilised", &|f| f.figure.clone()),
-        ("5 %", &|f| quantile(f, 0)),
-        ("median", &|f| quantile(f, 1)),
-        ("95 %", &|f| quantile(f, 2)),
-    ];
+    let figures = columns_of::<FigureQuantiles>()
+        .text("Of the stabilised", |f| f.figure.clone())
+        .text("5 %", |f| quantile(f, 0))
+        .text("median", |f| quantile(f, 1))
+        .text("95 %", |f| quantile(f, 2));
     let mut text = format!(
         "{} of {} runs are stabilised: {} (95 % interval {} to {}), {} fall\n\
          {} of the robots are unstable in the small\n\n{}\n",
@@ -66,17 +65,16 @@ fn shown(summary: &Summary) -> String {
         percent(summary.stabilised_high),
         percent(summary.fallen_share),
         percent(summary.unstable),
-        table_of(&summary.figures, figures)
+        table_of(&summary.figures, &figures)
     );
-    let influence: &[TableColumn<Influence>] = &[
-        ("Uncertain", &|o| o.value.clone()),
-        ("correlation with being stabilised", &|o| {
+    let influence = columns_of::<Influence>()
+        .text("Uncertain", |o| o.value.clone())
+        .text("correlation with being stabilised", |o| {
             format!("{:+.2}", o.correlation)
-        }),
-        ("of its size", &|o| format!("{:+.2}", o.correlation_of_size)),
-    ];
+        })
+        .text("of its size", |o| format!("{:+.2}", o.correlation_of_size));
     if !summary.influence.is_empty() {
-        text += &format!("\n{}\n", table_of(&summary.influence, influence));
+        text += &format!("\n{}\n", table_of(&summary.influence, &influence));
     }
     text
 }

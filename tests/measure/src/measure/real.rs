@@ -9,7 +9,7 @@
 use super::page::Page;
 use super::scatter::scatter_rad;
 use comfy_table::{ContentArrangement, Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose};
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, diagnose};
 use handstand::log::{LogRequest, read};
 use handstand::motion::Motion;
 use handstand::{Error, Model, Result};
@@ -239,7 +239,7 @@ fn tables(rows: &[(&Rig, Row)]) -> Measured {
             format!("{:.2}", 1e3 * error.floor_rad),
             format!("{:.2}", 1e3 * row.scatter_rad),
             if error.held_out { "held out" } else { "fitted" }.to_string(),
-            verdict(row.diagnosis.verdict),
+            row.diagnosis.verdict.name().to_string(),
             effects(&row.diagnosis),
             rig.expected.to_string(),
         ]);
@@ -265,10 +265,4 @@ fn effects(diagnosis: &Diagnosis) -> String {
         format!("or {}", names.join(" + "))
     });
     values.chain(rivals).collect::<Vec<_>>().join("\n")
-}
-
-/// The verdict's word, as in JSON.
-fn verdict(verdict: Verdict) -> String {
-    let word = serde_json::to_value(verdict).unwrap_or_default();
-    word.as_str().unwrap_or_default().to_string()
 }

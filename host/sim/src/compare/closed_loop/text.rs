@@ -32,10 +32,10 @@ const FIGURES: [(&str, Figure, Figure); 3] = [
 /// The models' loops beside the measured one, as a section of a text; empty without a model.
 pub fn closed_loop_text(compared: &[(&str, &ClosedLoopComparison)]) -> String {
     let rows = closed_loop_rows(compared);
-    let Some((header, rows)) = rows.split_first() else {
+    if rows.is_empty() {
         return String::new();
-    };
-    let table = aligned(header, rows);
+    }
+    let table = aligned(&rows);
     format!("\nClosed loop with the plan\n{table}\n{LEGEND}\n")
 }
 
