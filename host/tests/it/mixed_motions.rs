@@ -185,8 +185,6 @@ fn neither_balancing_nor_rest_hides_what_hanging_shows() {
     }
     bench.put("s1.csv", still(5.0));
     bench.put("s2.csv", still(5.0));
-    let swings = diagnosed(&bench, &["h1.csv", "h2.csv"], &["h3.csv"]);
-    assert_bar_friction(&swings);
     let all = diagnosed(
         &bench,
         &["h1.csv", "h2.csv", "b1.csv", "s1.csv"],
