@@ -187,7 +187,7 @@ pub fn page_table_with<'r, T: 'r>(
 ) -> Markup {
     let headings = html! {
         @for own in &columns.0 {
-            th scope="col" class=[own.class] { (own.page_heading.unwrap_or(&own.heading)) }
+            (heading(own.page_heading.unwrap_or(&own.heading), own.class))
         }
     };
     let rows = html! {
@@ -206,7 +206,7 @@ pub fn page_matrix(rows: &[impl AsRef<[String]>]) -> Markup {
     let mut rows = rows.iter().map(|row| row.as_ref().iter().enumerate());
     let headings = html! {
         @for (index, name) in rows.next().into_iter().flatten() {
-            th.number[index > 0] scope="col" { (name) }
+            (heading(name, (index > 0).then_some(NUMBER)))
         }
     };
     let rows = html! {
@@ -217,6 +217,13 @@ pub fn page_matrix(rows: &[impl AsRef<[String]>]) -> Markup {
         }
     };
     scrolling(Some("matrix"), &headings, &rows)
+}
+
+/// A column's heading; one without words is no heading to a screen reader.
+fn heading(words: &str, class: Option<&str>) -> Markup {
+    html! {
+        @if words.is_empty() { td {} } @else { th scope="col" class=[class] { (words) } }
+    }
 }
 
 /// A table that scrolls sideways where it is too wide.

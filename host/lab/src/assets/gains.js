@@ -38,11 +38,16 @@ const drawPoles = () => {
     pen.moveTo(x(re) + 5, y(im) - 5); pen.lineTo(x(re) - 5, y(im) + 5); pen.stroke();
   }
 };
+// A cell of a table; one without words is no heading, whatever it stands over.
+const cell = (text, i, scope) => {
+  const className = i ? "number" : "";
+  return scope && text ? element("th", { textContent: text, className, scope })
+    : element("td", { textContent: text, className });
+};
 const table = (head, rows) => element("table", {},
-  element("thead", {}, element("tr", {}, ...head.map((text, i) => element("th", {
-    textContent: text, className: i ? "number" : "", scope: "col" })))),
-  element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((text, i) => element(i ?
-    "td" : "th", { textContent: text, className: i ? "number" : "", scope: i ? "" : "row" }))))));
+  element("thead", {}, element("tr", {}, ...head.map((text, i) => cell(text, i, "col")))),
+  element("tbody", {}, ...rows.map((row) => element("tr", {},
+    ...row.map((text, i) => cell(text, i, i ? "" : "row"))))));
 const show = (said) => {
   poles = said.poles;
   drawPoles();
