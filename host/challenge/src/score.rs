@@ -69,8 +69,8 @@ pub fn score(
     })
 }
 
-/// A score as a table's rows: a header, then the hidden effect, its values and the error on the last
-/// log, mrad, each by the truth and by the model.
+/// A score as a table's rows: a header, then the hidden effect, its values and the error on the
+/// last log, mrad, each by the truth and by the model.
 pub fn score_rows<'a>(
     hidden: Option<&str>,
     added: &[String],

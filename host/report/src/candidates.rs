@@ -127,8 +127,8 @@ fn rows(diagnosis: &Diagnosis, tried: &[&RuledOut], full: f64, with_best: bool) 
     html! { div.tried { (page_table_with(rows, &columns, class)) } }
 }
 
-/// The columns of what was tried, under this title; joints are called as `names` has them, and pages
-/// draw the error.
+/// The columns of what was tried, under this title; joints are called as `names` has them, and
+/// pages draw the error.
 pub(crate) fn tried_columns<'a>(
     title: &'a str,
     names: &'a JointNames,

@@ -58,7 +58,8 @@ pub fn text(comparisons: &[Comparison], names: &JointNames) -> String {
 }
 
 /// What a comparison's table tells, below it.
-pub const LEGEND: &str = "rms: typical error; floor: what noise and resolution alone leave; fit: 100 % is a perfect model";
+pub const LEGEND: &str = "rms: typical error; floor: what noise and resolution alone leave; \
+    fit: 100 % is a perfect model";
 const NOWHERE: &str = "no condition holds more than its share of the error";
 
 /// One bar per model, the floor last: what each step gained, and what there is left to gain.

@@ -83,6 +83,14 @@ impl Scratch {
         self.axes.0[2]
     }
 
+    /// Acceleration of the frame while its joint has none, where that of the parent's is this.
+    #[inline(always)]
+    fn carried_on(&self, parent: &Spatial) -> Spatial {
+        let mut acceleration = parent.carried_on(self.arm);
+        acceleration.add(&self.bias, 1.0);
+        acceleration
+    }
+
     /// Moment and force of the rigid link at this acceleration.
     #[inline(always)]
     fn inertial(&self, mass_kg: f64, a: &Spatial) -> Spatial {
@@ -290,21 +298,19 @@ impl SpatialEquations {
         for (i, link) in self.links.iter().enumerate() {
             let parent = self.before(work, link);
             let at = &mut work.links[i];
-            let mut acceleration = parent.carried_on(at.arm);
-            acceleration.add(&at.bias, 1.0);
+            let mut acceleration = at.carried_on(&parent);
             acceleration.add_along(at.axis(), link.slides, acceleration_rad_s2[i]);
             at.acceleration = acceleration;
             let inertial = at.inertial(link.mass_kg, &acceleration);
             at.force.add(&inertial, 1.0);
         }
         for (i, link) in self.links.iter().enumerate().rev() {
-            let at = work.links[i];
-            let force = at.force;
+            let at = &work.links[i];
+            let (force, arm) = (at.force, at.arm);
             out[i] = force.along(at.axis(), link.slides) + link.armature * acceleration_rad_s2[i];
             bearing_n(i, dot(force.shifting, force.shifting).sqrt());
             if let Some(parent) = link.parent {
-                let handed_down = force.handed_down(at.arm);
-                work.links[parent].force.add(&handed_down, 1.0);
+                work.links[parent].force.add(&force.handed_down(arm), 1.0);
             }
         }
     }
@@ -328,8 +334,7 @@ fn forward(
     for (i, link) in equations.links.iter().enumerate() {
         let parent = equations.before(work, link);
         let at = &mut work.links[i];
-        let mut acceleration = parent.carried_on(at.arm);
-        acceleration.add(&at.bias, 1.0);
+        let mut acceleration = at.carried_on(&parent);
         let pulled = at.pull.dot(&acceleration) - at.left;
         out[i] = if held[i] {
             pulled
