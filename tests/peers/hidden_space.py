@@ -14,7 +14,7 @@ turn; rows come at 50 Hz. Its motions are those of people who record such arms: 
 reached in some time and held for some. Two motions of 20 s to learn from, one held out.
 
 Writes arm.urdf, nominal.toml (what the owner believes: viscous friction up to 30 % off and free,
-the hidden effect absent), true.toml, the logs, and truth.json; prints the latter. Equal arguments
+the hidden effect absent; where damping is hidden, that joint has none), true.toml, the logs, and truth.json; prints the latter. Equal arguments
 give equal bytes. The folder must not hold files.
 
 With --convention one motion is to learn from and one held out, dry friction is in the file, too, up
@@ -22,7 +22,8 @@ to 30 % off and free, and the log of one joint is written by another convention 
 readings and goals alike, as a calibration does it: reversed, from another zero, in another unit.
 
 Nothing here is taken from the library whose diagnosis is measured: the rigid body, damping,
-armature and dry friction are MuJoCo's own; drives, delay and encoders are applied outside of it.
+armature, dry friction and the gap of a gear are MuJoCo's own; drives, delay and encoders are applied
+outside of it. A motor behind a gap has a rotor beside what the file has of the joint's armature.
 """
 
 import argparse
@@ -66,15 +67,17 @@ def signed(low, high):
 # Kind: the joints at which it shows, none for all; its values, of the servo of a small arm.
 EFFECTS = {
     "coulomb": (None, {"torque_nm": within(0.06, 0.2)}),
+    "viscous": (None, {"coefficient_nm_s_rad": within(0.1, 0.4)}),
     "armature": (None, {"inertia_kg_m2": within(0.01, 0.04)}),
     "delay": (None, {"delay_s": within(0.03, 0.1)}),
     "dead_zone": (None, {"width": within(0.03, 0.1), "punch": within(0.0, 0.0)}),
     "mass": (range(2, 6), {"added_kg": within(0.05, 0.2)}),
     "encoder_zero": (range(2, 5), {"offset_rad": signed(0.04, 0.1)}),
     "torque_saturation": (range(2, 5), {"limit_nm": within(0.5, 0.8)}),
+    "gear_backlash": (None, {"inertia_kg_m2": within(0.005, 0.02), "gap_rad": within(0.02, 0.06)}),
 }
 # Values that are as much larger as the drive is stronger.
-OF_THE_DRIVE = ("torque_nm", "inertia_kg_m2", "limit_nm")
+OF_THE_DRIVE = ("torque_nm", "inertia_kg_m2", "limit_nm", "coefficient_nm_s_rad")
 
 
 def stream(seed, number):
@@ -117,7 +120,13 @@ def drawn(word, seed, drives):
 
 
 class Arm:
-    """The arm with its friction and what is hidden in it."""
+    """The arm with its friction and what is hidden in it.
+
+    MuJoCo's step is that of the leapfrog: speeds are half a step behind angles. What acts with the
+    speed after the step (MuJoCo's damping) leads by half a step, what acts with the one before it
+    lags by as much, and either is an inertia of half a step times its coefficient, which is taken
+    off or added. Inputs act half a step early, so angles are read half a step back.
+    """
 
     def __init__(self, joints, drives, step_s, friction, effects):
         self.joints = joints
@@ -136,11 +145,19 @@ class Arm:
             f'<mujoco>{space_arm.COMPILER}<option timestep="{self.step_s}" gravity="0 0 -9.81" '
             'integrator="implicitfast"/><worldbody>'
         )
-        body = ""
+        body, gaps = "", ""
         for j, joint in enumerate(self.joints):
+            back_emf = self.drives.back_emf_nm_s_rad(j)
+            outside = back_emf if self.limit_nm(j) else 0.0
+            damping = self.viscous[j] + self.value("viscous", j, "coefficient_nm_s_rad")
+            rotor = self.value("gear_backlash", j, "inertia_kg_m2")
+            if rotor:
+                body += self.rotor(j, rotor, back_emf)
+                gaps += self.gap(j)
+            else:
+                damping += back_emf - outside
             armature = self.drives.armature_kg_m2(j) + self.value("armature", j, "inertia_kg_m2")
-            back_emf = 0.0 if self.limit_nm(j) else self.drives.back_emf_nm_s_rad(j)
-            damping = self.viscous[j] + back_emf
+            armature -= 0.5 * self.step_s * (damping - outside)
             rub = self.dry[j] + self.value("coulomb", j, "torque_nm")
             body += space_arm.body(
                 joint,
@@ -148,7 +165,29 @@ class Arm:
                 f'damping="{damping}" armature="{armature}" frictionloss="{rub}" '
                 f'solreffriction="{2 * self.step_s} 1" solimpfriction="0.9999 0.9999 0.001"',
             )
-        return head + body + "</body>" * len(self.joints) + "</worldbody></mujoco>"
+        return f"{head}{body}{'</body>' * len(self.joints)}</worldbody><tendon>{gaps}</tendon></mujoco>"
+
+    def rotor(self, j, inertia_kg_m2, damping):
+        """The motor in front of a gap: it turns about its joint's axis beside the link."""
+        joint = self.joints[j]
+        armature = inertia_kg_m2 - 0.5 * self.step_s * damping
+        weightless = dataclasses.replace(
+            joint,
+            name=f"{joint.name}_rotor",
+            mass_kg=1e-9,
+            inertia_kg_m2=(1e-12, 1e-12, 1e-12, 0.0, 0.0, 0.0),
+        )
+        return space_arm.body(weightless, 0.0, f'damping="{damping}" armature="{armature}"') + "</body>"
+
+    def gap(self, j):
+        """The flanks between motor and link, stiff, from which neither rebounds."""
+        name = self.joints[j].name
+        half = 0.5 * self.value("gear_backlash", j, "gap_rad")
+        return (
+            f'<fixed limited="true" range="{-half} {half}" solreflimit="{2 * self.step_s} 1" '
+            f'solimplimit="0.9999 0.9999 0.001"><joint joint="{name}" coef="1"/>'
+            f'<joint joint="{name}_rotor" coef="-1"/></fixed>'
+        )
 
     def limit_nm(self, joint):
         return self.value("torque_saturation", joint, "limit_nm")
@@ -171,24 +210,31 @@ class Arm:
         data = mujoco.MjData(model)
         count, steps = len(self.joints), round(SAMPLE_S / self.step_s)
         late = [round(self.value("delay", j, "delay_s") / self.step_s) for j in range(count)]
-        zero = [self.value("encoder_zero", j, "offset_rad") for j in range(count)]
-        data.qpos[:] = goals[0] - zero
-        for step in range(round(2.0 / self.step_s)):
-            self.push(data, goals[0])
-            mujoco.mj_step(model, data)
-        rows = []
-        for step in range(ROWS * steps):
-            if step % steps == 0:
-                rows.append(np.round((data.qpos + zero) / TICK_RAD) * TICK_RAD)
-            heard = [goals[max(0, step - late[j]) // steps][j] for j in range(count)]
-            self.push(data, heard)
-            mujoco.mj_step(model, data)
-        return np.array(rows)
+        zero = np.array([self.value("encoder_zero", j, "offset_rad") for j in range(count)])
+        links = [model.joint(joint.name).dofadr[0] for joint in self.joints]
+        names = {model.joint(i).name for i in range(model.njnt)}
+        motors = [
+            model.joint(f"{joint.name}_rotor").dofadr[0] if f"{joint.name}_rotor" in names else link
+            for joint, link in zip(self.joints, links)
+        ]
+        data.qpos[links] = goals[0] - zero
+        data.qpos[motors] = goals[0] - zero
 
-    def push(self, data, goals):
-        for joint, goal in enumerate(goals):
-            angle, speed = data.qpos[joint], data.qvel[joint]
-            data.qfrc_applied[joint] = self.torque_nm(joint, goal, angle, speed)
+        def step(goals):
+            for joint, goal in enumerate(goals):
+                angle, speed = data.qpos[links[joint]], data.qvel[links[joint]]
+                data.qfrc_applied[motors[joint]] = self.torque_nm(joint, goal, angle, speed)
+            mujoco.mj_step(model, data)
+
+        for _ in range(round(2.0 / self.step_s)):
+            step(goals[0])
+        rows = []
+        for at in range(ROWS * steps):
+            if at % steps == 0:
+                angles = data.qpos[links] - 0.5 * self.step_s * data.qvel[links] + zero
+                rows.append(np.round(angles / TICK_RAD) * TICK_RAD)
+            step([goals[max(0, at - late[j]) // steps][j] for j in range(count)])
+        return np.array(rows)
 
 
 def reaching(joints, rng):
@@ -251,6 +297,8 @@ def model_toml(joints, drives, friction, effects):
     own = {"armature": rotors, **friction}
     for kind, values in own.items():
         for joint, value in enumerate(values, start=1):
+            if value is None:
+                continue
             more = [e for e in effects if (e["kind"], e["joint"]) == (kind, joint)]
             value += sum(e["parameters"][OWN[kind]] for e in more)
             lines += effect_toml(kind, joint, {OWN[kind]: value})
@@ -258,7 +306,10 @@ def model_toml(joints, drives, friction, effects):
         if effect["kind"] not in own:
             lines += effect_toml(effect["kind"], effect["joint"], effect["parameters"])
     free = ", ".join(
-        f'"{kind}@{joint + 1}.{OWN[kind]}"' for kind in friction for joint in range(len(joints))
+        f'"{kind}@{joint}.{OWN[kind]}"'
+        for kind, values in friction.items()
+        for joint, value in enumerate(values, start=1)
+        if value is not None
     )
     lines += ["[fit]", f"free = [{free}]", "", "[log]"]
     lines += ['time = { column = "time_s", unit = "s" }', ""]
@@ -310,6 +361,9 @@ def write(args):
             round(float(rng.uniform(*bounds)) * drives.share(j), 4) for j in range(len(joints))
         ]
         believed[kind] = [round(own * float(rng.uniform(0.7, 1.3)), 4) for own in true[kind]]
+    for effect in (effect for effect in effects if effect["kind"] in true):
+        at = effect["joint"] - 1
+        true[effect["kind"]][at], believed[effect["kind"]][at] = 0.0, None
     arm = Arm(joints, drives, COARSE_STEP_S if args.convention else STEP_S, true, effects)
 
     written = None

@@ -103,8 +103,11 @@ pub const OUTSIDE: [&str; 6] = [
 
 /// Effects that MuJoCo hides in an arm in space; its file states armatures, so another one is a
 /// wrong value, and no effect.
-const IN_SPACE: [&str; 6] = [
+const IN_SPACE: [&str; 9] = [
     "coulomb",
+    "viscous",
+    "armature",
+    "gear_backlash",
     "delay",
     "dead_zone",
     "mass",
