@@ -8,6 +8,10 @@ use super::measured_value::values_behind;
 use super::stability::most_raised;
 use super::verdict::{Kind, Signs};
 
+/// Standard uncertainties beyond which a file is not believed to be wrong if something nearer to it
+/// does as well: a mass or a distance of 2.7 times, a moment of inertia of 55 times what it says.
+const INCREDIBLE: f64 = 20.0;
+
 /// Every explanation that was tried.
 #[derive(Default)]
 pub(super) struct SearchOutcome {
@@ -89,16 +93,16 @@ impl SearchOutcome {
             None => Explanation::Given(given),
         };
         let best = champion.hypothesis();
-        if let Some(value) = evaluator.accepted(given, &self.values)
-            && !evaluator.clearly_worse(value, best, given)
-        {
-            return Explanation::Value(value);
-        }
-        match evaluator.accepted(base, &self.values_refitted) {
-            Some(value) if !evaluator.clearly_worse(value, best, base) => {
-                Explanation::ValueAndRefit(value)
+        let refitted = evaluator
+            .accepted(base, &self.values_refitted)
+            .filter(|value| !evaluator.clearly_worse(value, best, base));
+        let leaves_less = |value: &&Hypothesis| value.deciding_mean() < best.deciding_mean();
+        let least = refitted.filter(leaves_less).unwrap_or(best);
+        match evaluator.accepted(given, &self.values) {
+            Some(value) if !evaluator.clearly_worse(value, least, given) => {
+                Explanation::Value(value)
             }
-            _ => champion,
+            _ => refitted.map_or(champion, Explanation::ValueAndRefit),
         }
     }
 }
@@ -133,12 +137,22 @@ impl<'a> VerdictEvidence<'a> {
             Explanation::Value(value) => value.values.iter().all(is_unknown),
             _ => false,
         };
-        let open = |rivals: &[&Hypothesis]| rivals.iter().any(|rival| !self.says_the_same(rival));
+        let open = |rivals: &[&Hypothesis]| {
+            let mut open = rivals.iter().filter(|rival| !self.says_the_same(rival));
+            open.any(|rival| self.is_believable(rival))
+        };
         if is_freed {
             open(&self.as_good())
         } else {
             open(rivals)
         }
+    }
+
+    /// Whether the file may be as wrong as a rival says it is; where the explanation asks for as
+    /// much, every rival may.
+    fn is_believable(&self, rival: &Hypothesis) -> bool {
+        let [own, other] = [self.chosen(), rival].map(|h| h.surprise(&self.evaluator.start));
+        other <= INCREDIBLE || own > INCREDIBLE
     }
 
     /// Whether a rival is the explanation in other words in any experiment: a scale, and the value

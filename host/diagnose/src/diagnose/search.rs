@@ -11,7 +11,7 @@ use super::budget::{
     VALUE_STEPS, larger_steps, singles_steps,
 };
 use super::evaluator::{Evaluator, Reach, every_change};
-use super::explanation::SearchOutcome;
+use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
 use super::progress::Stage;
 use super::verdict::FAR_OFF;
@@ -31,7 +31,8 @@ impl Evaluator<'_> {
     /// what it has, and goes on from there.
     pub fn search(&mut self, found: &mut SearchResults) {
         if found.sizes.is_empty() {
-            if self.leaves_tolerated(found) && !self.at_noise_floor(&self.base) {
+            let tolerates = self.tolerates(found.outcome().explanation(self));
+            if tolerates && !self.at_noise_floor(&self.base) {
                 (found.is_tolerated, found.at) = (true, None);
                 return;
             }
@@ -150,30 +151,25 @@ impl Evaluator<'_> {
         self.keep(found, |found| found.values_refitted = values);
     }
 
-    /// Whether there is nothing left to look for beside the best set, or the base model; nothing is
-    /// where the user tolerates what is left.
+    /// Whether there is nothing left to look for beside the best set, another value of the file, or
+    /// the base model; nothing is where the user tolerates what is left.
     fn is_done(&self, found: &mut SearchResults) -> bool {
         let best = found.best.as_ref();
-        let is_explained = match (best, self.reach) {
-            (Some(best), Reach::Everything) => self.is_explained_by(best),
-            (best, _) => self.at_noise_floor(best.unwrap_or(&self.base)),
-        };
-        found.is_tolerated = !is_explained && self.leaves_tolerated(found);
+        let tried = found.outcome();
+        let explanation = tried.explanation(self);
+        let is_explained = self.is_value_that_explains(explanation)
+            || match (best, self.reach) {
+                (Some(best), Reach::Everything) => self.is_explained_by(best),
+                (best, _) => self.at_noise_floor(best.unwrap_or(&self.base)),
+            };
+        found.is_tolerated = !is_explained && self.tolerates(explanation);
         is_explained || found.is_tolerated
     }
 
     /// Whether the user asks for no less error than the explanation leaves that was found.
-    fn leaves_tolerated(&self, found: &SearchResults) -> bool {
-        self.tolerance_rad.is_some_and(|tolerance_rad| {
-            let tried = SearchOutcome {
-                values: found.values.clone(),
-                values_refitted: found.values_refitted.clone(),
-                best: found.best.clone(),
-                hypotheses: Vec::new(),
-            };
-            let explanation = tried.explanation(self).hypothesis();
-            explanation.deciding_rms_rad() <= tolerance_rad
-        })
+    fn tolerates(&self, explanation: Explanation) -> bool {
+        let left_rad = explanation.hypothesis().deciding_rms_rad();
+        (self.tolerance_rad).is_some_and(|tolerance_rad| left_rad <= tolerance_rad)
     }
 
     /// Whether a set leaves nothing but noise, over the horizon that counts and in the windows it
@@ -394,3 +390,5 @@ mod merged_tests;
 mod stated_tests;
 #[cfg(test)]
 pub(super) mod tests;
+#[cfg(test)]
+mod value_tests;

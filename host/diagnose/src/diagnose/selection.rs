@@ -61,7 +61,9 @@ impl Evaluator<'_> {
     /// The best hypothesis that is significantly and usefully better than `reference` where it
     /// counts.
     ///
-    /// Among hypotheses that nothing tells apart, the one with the fewest values.
+    /// Among hypotheses that nothing tells apart, the one with the fewest values, and of those that
+    /// change one of the model's the one that its owner would wonder at least: what moves only a
+    /// little of a motion must become many times what it is.
     pub fn accepted<'a>(
         &self,
         reference: &Hypothesis,
@@ -79,7 +81,10 @@ impl Evaluator<'_> {
         });
         let simplest = as_good.min_by(|a, b| {
             let values = a.0.added_values().cmp(&b.0.added_values());
-            values.then(b.1.total_cmp(&a.1))
+            let [first, second] = [a.0, b.0].map(|h| h.surprise(&self.start));
+            values
+                .then(first.total_cmp(&second))
+                .then(b.1.total_cmp(&a.1))
         });
         simplest.map(|(hypothesis, _)| *hypothesis)
     }

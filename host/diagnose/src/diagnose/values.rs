@@ -3,6 +3,7 @@
 
 use super::budget::{EVALUATION_STEPS, FINALISTS, FINISH, LOOK};
 use super::evaluator::Evaluator;
+use super::explanation::Explanation;
 use super::findings::WrongValue;
 use super::first_look::best_third;
 use super::hypothesis::Hypothesis;
@@ -39,6 +40,13 @@ impl Evaluator<'_> {
         let mut open = values_of(&self.start);
         open.retain(|path| !self.known.contains(path));
         open
+    }
+
+    /// Whether one other value of the file leaves nothing to explain: no set of several effects is
+    /// as simple.
+    pub fn is_value_that_explains(&self, explanation: Explanation) -> bool {
+        use Explanation::{Value, ValueAndRefit};
+        matches!(explanation, Value(value) | ValueAndRefit(value) if self.is_explained_by(value))
     }
 
     /// Fits a value to the end, or until it is seen that it stays hopeless: above the limit, and no
@@ -90,6 +98,18 @@ impl Evaluator<'_> {
             self.course.step(EVALUATION_STEPS)
         });
         values
+    }
+}
+
+impl Hypothesis {
+    /// How far the values it changes are from those of the model, the farthest, in standard
+    /// uncertainties.
+    pub fn surprise(&self, given: &Model) -> f64 {
+        let surprise = |path: &ParameterPath| {
+            let value = path.get(&self.search.model);
+            value.map_or(0.0, |value| given.surprise(*path, value))
+        };
+        self.values.iter().map(surprise).fold(0.0, f64::max)
     }
 }
 

@@ -74,6 +74,20 @@ impl Model {
         self.uncertain.retain(|known| !paths.contains(&known.path));
     }
 
+    /// How far another value lies from what the model says, in standard uncertainties: those that
+    /// its owner states, else the [typical] ones, or half of a value that is an effect's. 0 where
+    /// the model has none, or 0.
+    pub fn surprise(&self, path: ParameterPath, value: f64) -> f64 {
+        let given = path.get(self).filter(|given| *given != 0.0);
+        let of_kind = |given| UncertainValue {
+            path,
+            given,
+            uncertainty: typical(path).unwrap_or(OF_EFFECTS),
+        };
+        let known = (self.uncertain(path).copied()).or_else(|| given.map(of_kind));
+        known.map_or(0.0, |known| known.at(value).distance.abs())
+    }
+
     /// The values whose uncertainty is [typical] of their kind.
     pub fn typically_uncertain(&self) -> Vec<UncertainValue> {
         let links = (0..self.links.len()).flat_map(|index| {
@@ -95,6 +109,10 @@ impl Model {
         links.chain(joints).filter_map(value).collect()
     }
 }
+
+/// Share of an effect's value by which no one would wonder to find another: friction and rotors are
+/// seldom on a data sheet.
+const OF_EFFECTS: f64 = 0.5;
 
 /// Standard uncertainty of a value of this kind, as a share of it, where its owner says no more:
 /// what is weighed with the link's cables, computed from a drawing, or found in a data sheet.

@@ -132,6 +132,49 @@ fn a_value_that_the_file_frees_stays_the_answer() {
     assert_eq!(verdict(&evaluator), Verdict::Ambiguous);
 }
 
+/// A link that would have to weigh many times what its owner says leaves open nothing that needs
+/// less, and one that might weigh a little more does.
+#[test]
+fn a_value_that_no_one_would_believe_is_no_rival() {
+    let evaluator = evaluator(1, &["viscous"]);
+    let mut friction = fitted(&evaluator, &["viscous"], [&[0.02]]);
+    evaluator.evaluate(&mut friction);
+    let mass = "link1.mass_kg".parse().unwrap();
+    let given_kg = evaluator.start.links[0].mass_kg;
+    let weighing = |factor: f64| {
+        let mut value = Hypothesis {
+            set: Vec::new(),
+            values: vec![mass],
+            ..friction.clone()
+        };
+        assert!(mass.set(&mut value.search.model, factor * given_kg));
+        value
+    };
+    let tried = SearchOutcome::default();
+    let beside = |chosen: &Hypothesis, factor: f64| {
+        let explanation = Explanation::ValueAndRefit(chosen);
+        verdict_of(
+            &evaluator,
+            &tried,
+            explanation,
+            &[weighing(factor)],
+            Vec::new(),
+        )
+    };
+    let speed = Hypothesis {
+        values: vec!["joint1.no_load_speed_rad_s".parse().unwrap()],
+        ..weighing(1.0)
+    };
+    assert_eq!(beside(&speed, 1.2), Verdict::Ambiguous);
+    assert_eq!(beside(&speed, 180.0), Verdict::WrongValue);
+    // Where the explanation asks for as much, the rival may.
+    let chosen = Hypothesis {
+        values: vec![mass, "joint1.no_load_speed_rad_s".parse().unwrap()],
+        ..weighing(180.0)
+    };
+    assert_eq!(beside(&chosen, 180.0), Verdict::Ambiguous);
+}
+
 /// Some other friction helps an arm that lacks viscous friction, by far not as much as that does.
 #[test]
 fn a_value_that_is_clearly_worse_is_not_the_explanation() {

@@ -1,6 +1,7 @@
 //! What a search has found, whole at any time.
 
 use super::super::evaluator::Evaluator;
+use super::super::explanation::SearchOutcome;
 use super::super::hypothesis::Hypothesis;
 use super::super::progress::Stage;
 use crate::fitting::Candidate;
@@ -28,6 +29,16 @@ pub(in crate::diagnose) struct SearchResults {
 }
 
 impl SearchResults {
+    /// What an explanation is chosen of: the best set alone of all sets.
+    pub(super) fn outcome(&self) -> SearchOutcome {
+        SearchOutcome {
+            values: self.values.clone(),
+            values_refitted: self.values_refitted.clone(),
+            best: self.best.clone(),
+            hypotheses: Vec::new(),
+        }
+    }
+
     /// What was not tried where the search was ended, in words.
     pub fn not_tried(&self, most_effects: usize) -> Vec<String> {
         let last = Stage::of_size(most_effects).max(Stage::Values);
