@@ -102,15 +102,16 @@ fn values(list: &Json) -> Vec<(String, f64)> {
     list.filter_map(value).collect()
 }
 
-/// A wrong value under the name of the effect that says the same. None for values of effects:
-/// friction of the file, which its owner only guesses.
-fn name(path: &str) -> Option<String> {
+/// A wrong value under the name of the effect that says the same. None for values of effects that
+/// the file frees: friction, which its owner only guesses.
+fn name(value: &Json) -> Option<String> {
+    let path = value["path"].as_str()?;
     let (owner, field) = path.split_once('.')?;
     let number = |kind: &str| owner.strip_prefix(kind);
     match (number("link"), number("joint"), field) {
         (Some(link), _, "mass_kg") => Some(format!("mass@{link}")),
         (_, Some(joint), "stall_torque_nm") => Some(format!("torque_scale@{joint}")),
-        (None, None, _) => None,
+        (None, None, _) => (value["free"] != true).then(|| owner.to_string()),
         _ => Some(path.to_string()),
     }
 }
@@ -123,8 +124,7 @@ fn set(explanation: &Json) -> Vec<String> {
     } else {
         let wrong = explanation["wrong_values"].as_array().into_iter().flatten();
         let beyond = wrong.filter(|value| value["within_uncertainty"] != true);
-        let paths = beyond.filter_map(|value| value["path"].as_str());
-        paths.filter_map(name).collect()
+        beyond.filter_map(name).collect()
     }
 }
 
@@ -176,16 +176,20 @@ mod tests {
     #[test]
     fn a_wrong_value_is_named_as_the_effect_that_says_the_same() {
         let value = |path: &str| json!({ "path": path, "value": 0.3, "given": 0.2 });
+        let mut friction = value("viscous@1.coefficient_nm_s_rad");
+        friction["free"] = json!(true);
         let said = said(&json!({
             "verdict": "ambiguous",
             "effects": [],
-            "wrong_values": [value("link2.mass_kg"), value("viscous@1.coefficient_nm_s_rad")],
+            "wrong_values": [value("link2.mass_kg"), friction],
             "alternatives": [
                 { "effects": [], "wrong_values": [value("joint1.stall_torque_nm")] },
                 { "effects": [], "wrong_values": [value("link1.com_m")] },
+                { "effects": [], "wrong_values": [value("armature@3.inertia_kg_m2")] },
             ],
         }));
-        assert_eq!(said.sets, [["mass@2"], ["torque_scale@1"], ["link1.com_m"]]);
+        let names = ["mass@2", "torque_scale@1", "link1.com_m", "armature@3"];
+        assert_eq!(said.sets, names.map(|name| [name]));
         assert_eq!(said.values.len(), 2);
     }
 }
