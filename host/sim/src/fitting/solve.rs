@@ -192,9 +192,10 @@ fn guesses(data: &FitProblem) -> Vec<StartGuess> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::log_tests::{ANGLE, even, pendulum, swing};
+    use super::super::log_tests::{ANGLE, driven, even, pendulum, swing};
     use super::*;
     use crate::fitting::{Candidate, Horizon};
+    use std::path::Path;
 
     #[test]
     fn a_glance_takes_no_derivatives_again_and_goes_on_as_a_look() {
@@ -229,5 +230,33 @@ mod tests {
             cost(&on),
             cost(&look)
         );
+    }
+
+    /// A gear whose motor weighs nothing hides none; one that a fit made heavier does.
+    #[test]
+    fn derivatives_of_other_starts_are_not_taken_over() {
+        let text = "[rig]\nname = \"arm\"\nangle_zero = \"hanging\"\n[[link]]\ncom_m = 0.1\n\
+             mass_kg = 0.4\ninertia_kg_m2 = 2e-3\n[[joint]]\ndrive = \"position\"\n\
+             gain_per_rad = 3.0\nstall_torque_nm = 1.5\nno_load_speed_rad_s = 7.0\n\
+             [[effect]]\nkind = \"gear_compliance\"\njoint = 1\ninertia_kg_m2 = 0.0\n\
+             stiffness_nm_rad = 4.0\ndamping_ratio = 0.1\n[log]\n\
+             time = { column = \"t\", unit = \"s\" }\n[[log.joint]]\n\
+             position = { column = \"q\", unit = \"rad\", resolution_rad = 0.001 }\n\
+             input = { column = \"u\", unit = \"rad\" }\n";
+        let light = Model::parse(text, Path::new("arm.toml")).unwrap();
+        let goal = even(200, 100.0).iter().map(|t| (5.0 * t).sin()).collect();
+        let motion = driven(&light, &[0.0], even(200, 100.0), vec![Some(goal)]);
+        let data = FitProblem::new(&light, vec![motion], Horizon::Seconds(1.0));
+        let inertia = "gear_compliance@1.inertia_kg_m2".parse().unwrap();
+        let mut base = fit(&light, &[inertia], &data, None, FitOptions::iterations(0));
+        assert!(inertia.set(&mut base.model, 0.01));
+        assert!(data.hidden(&light).len() < data.hidden(&base.model).len());
+        let friction = Candidate::named("coulomb@1", &base.model).unwrap();
+        let mut model = base.model.clone();
+        model.effects.push(friction.instance(&[0.01]));
+        let added: Vec<ParameterPath> = friction.paths().collect();
+        let found = base.with_free(&model, &added, &data, FitOptions::iterations(4));
+        assert_eq!(found.free.len(), 2);
+        assert!(found.residuals.cost().is_finite());
     }
 }
