@@ -14,16 +14,16 @@ turn; rows come at 50 Hz. Its motions are those of people who record such arms: 
 reached in some time and held for some. Two motions of 20 s to learn from, one held out.
 
 Writes arm.urdf, nominal.toml (what the owner believes: viscous friction up to 30 % off and free,
-the hidden effect absent; where damping is hidden, that joint has none), true.toml, the logs, and truth.json; prints the latter. Equal arguments
-give equal bytes. The folder must not hold files.
+the hidden effect absent; where damping is hidden, that joint has none), true.toml, the logs, and
+truth.json; prints the latter. Equal arguments give equal bytes. The folder must not hold files.
 
 With --convention one motion is to learn from and one held out, dry friction is in the file, too, up
 to 30 % off and free, and the log of one joint is written by another convention than the file's,
 readings and goals alike, as a calibration does it: reversed, from another zero, in another unit.
 
 Nothing here is taken from the library whose diagnosis is measured: the rigid body, damping,
-armature, dry friction and the gap of a gear are MuJoCo's own; drives, delay and encoders are applied
-outside of it. A motor behind a gap has a rotor beside what the file has of the joint's armature.
+armature, dry friction and the gap of a gear are MuJoCo's own; drives, delay and encoders are
+applied outside of it. A motor behind a gap has a rotor beside the armature that the file has.
 """
 
 import argparse
@@ -165,7 +165,8 @@ class Arm:
                 f'damping="{damping}" armature="{armature}" frictionloss="{rub}" '
                 f'solreffriction="{2 * self.step_s} 1" solimpfriction="0.9999 0.9999 0.001"',
             )
-        return f"{head}{body}{'</body>' * len(self.joints)}</worldbody><tendon>{gaps}</tendon></mujoco>"
+        ends = "</body>" * len(self.joints) + "</worldbody>"
+        return f"{head}{body}{ends}<tendon>{gaps}</tendon></mujoco>"
 
     def rotor(self, j, inertia_kg_m2, damping):
         """The motor in front of a gap: it turns about its joint's axis beside the link."""
@@ -177,7 +178,8 @@ class Arm:
             mass_kg=1e-9,
             inertia_kg_m2=(1e-12, 1e-12, 1e-12, 0.0, 0.0, 0.0),
         )
-        return space_arm.body(weightless, 0.0, f'damping="{damping}" armature="{armature}"') + "</body>"
+        of_joint = f'damping="{damping}" armature="{armature}"'
+        return space_arm.body(weightless, 0.0, of_joint) + "</body>"
 
     def gap(self, j):
         """The flanks between motor and link, stiff, from which neither rebounds."""
@@ -211,12 +213,11 @@ class Arm:
         count, steps = len(self.joints), round(SAMPLE_S / self.step_s)
         late = [round(self.value("delay", j, "delay_s") / self.step_s) for j in range(count)]
         zero = np.array([self.value("encoder_zero", j, "offset_rad") for j in range(count)])
-        links = [model.joint(joint.name).dofadr[0] for joint in self.joints]
-        names = {model.joint(i).name for i in range(model.njnt)}
-        motors = [
-            model.joint(f"{joint.name}_rotor").dofadr[0] if f"{joint.name}_rotor" in names else link
-            for joint, link in zip(self.joints, links)
-        ]
+        names = [joint.name for joint in self.joints]
+        links = [model.joint(name).dofadr[0] for name in names]
+        behind = [("gear_backlash", j) in self.of for j in range(count)]
+        driven = [f"{name}_rotor" if gap else name for name, gap in zip(names, behind)]
+        motors = [model.joint(name).dofadr[0] for name in driven]
         data.qpos[links] = goals[0] - zero
         data.qpos[motors] = goals[0] - zero
 

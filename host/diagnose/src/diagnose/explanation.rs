@@ -151,7 +151,7 @@ impl<'a> VerdictEvidence<'a> {
     /// Whether the file may be as wrong as a rival says it is; where the explanation asks for as
     /// much, every rival may.
     fn is_believable(&self, rival: &Hypothesis) -> bool {
-        let [own, other] = [self.chosen(), rival].map(|h| h.surprise(&self.evaluator.start));
+        let [own, other] = [self.chosen(), rival].map(|h| h.deviation(&self.evaluator.start));
         other <= INCREDIBLE || own > INCREDIBLE
     }
 

@@ -81,7 +81,7 @@ impl Evaluator<'_> {
         });
         let simplest = as_good.min_by(|a, b| {
             let values = a.0.added_values().cmp(&b.0.added_values());
-            let [first, second] = [a.0, b.0].map(|h| h.surprise(&self.start));
+            let [first, second] = [a.0, b.0].map(|h| h.deviation(&self.start));
             values
                 .then(first.total_cmp(&second))
                 .then(b.1.total_cmp(&a.1))

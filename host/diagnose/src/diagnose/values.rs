@@ -104,12 +104,12 @@ impl Evaluator<'_> {
 impl Hypothesis {
     /// How far the values it changes are from those of the model, the farthest, in standard
     /// uncertainties.
-    pub fn surprise(&self, given: &Model) -> f64 {
-        let surprise = |path: &ParameterPath| {
+    pub fn deviation(&self, given: &Model) -> f64 {
+        let deviation = |path: &ParameterPath| {
             let value = path.get(&self.search.model);
-            value.map_or(0.0, |value| given.surprise(*path, value))
+            value.map_or(0.0, |value| given.deviation(*path, value))
         };
-        self.values.iter().map(surprise).fold(0.0, f64::max)
+        self.values.iter().map(deviation).fold(0.0, f64::max)
     }
 }
 

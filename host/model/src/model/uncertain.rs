@@ -77,7 +77,7 @@ impl Model {
     /// How far another value lies from what the model says, in standard uncertainties: those that
     /// its owner states, else the [typical] ones, or half of a value that is an effect's. 0 where
     /// the model has none, or 0.
-    pub fn surprise(&self, path: ParameterPath, value: f64) -> f64 {
+    pub fn deviation(&self, path: ParameterPath, value: f64) -> f64 {
         let given = path.get(self).filter(|given| *given != 0.0);
         let of_kind = |given| UncertainValue {
             path,
