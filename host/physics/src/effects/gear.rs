@@ -29,6 +29,16 @@ impl Gear {
     };
 }
 
+/// Which of a gap's flanks pushes.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Flank {
+    /// Neither.
+    #[default]
+    None,
+    /// The one that turns the joint in this direction, +1 or -1.
+    Of(f64),
+}
+
 /// A motor with inertia, and the spring or the flanks through which it turns its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coupling {
@@ -59,16 +69,51 @@ impl Coupling {
     /// Torque that the gear transmits to the joint, N m, where the motor is `wound_rad` ahead of it
     /// and winds it up further by `winding_rad_s`. Flanks push and never pull.
     pub fn torque_nm(&self, wound_rad: f64, winding_rad_s: f64) -> f64 {
-        let damping_nm = self.damping_nm_s_rad * winding_rad_s;
-        if self.half_gap_rad == 0.0 {
-            return self.stiffness_nm_rad * wound_rad + damping_nm;
+        let flank = self.flank(wound_rad, winding_rad_s);
+        self.torque_on_nm(flank, wound_rad, winding_rad_s)
+    }
+
+    /// The same while this flank pushes; a smooth law, which pulls where it no longer does.
+    pub fn torque_on_nm(&self, flank: Flank, wound_rad: f64, winding_rad_s: f64) -> f64 {
+        let within_rad = match flank {
+            Flank::None if self.has_gap() => return 0.0,
+            Flank::None => wound_rad,
+            Flank::Of(direction) => wound_rad - direction * self.half_gap_rad,
+        };
+        self.stiffness_nm_rad * within_rad + self.damping_nm_s_rad * winding_rad_s
+    }
+
+    /// The flank that pushes: none within the gap, or where flanks part faster than they spring
+    /// back.
+    pub fn flank(&self, wound_rad: f64, winding_rad_s: f64) -> Flank {
+        if self.has_gap() && self.pressed_rad(Flank::None, wound_rad, winding_rad_s) > 0.0 {
+            Flank::Of(wound_rad.signum())
+        } else {
+            Flank::None
         }
-        let pressed_rad = wound_rad.abs() - self.half_gap_rad;
-        if pressed_rad <= 0.0 {
-            return 0.0;
+    }
+
+    /// By how much the flank that pushes is pressed, or the nearer one of two that do not, rad; at
+    /// 0 they part or meet.
+    pub fn pressed_rad(&self, flank: Flank, wound_rad: f64, winding_rad_s: f64) -> f64 {
+        let damping_rad = self.damping_nm_s_rad / self.stiffness_nm_rad * winding_rad_s;
+        match flank {
+            Flank::Of(direction) => direction * (wound_rad + damping_rad) - self.half_gap_rad,
+            Flank::None => {
+                let inward_rad = (wound_rad.signum() * damping_rad).min(0.0);
+                wound_rad.abs() - self.half_gap_rad + inward_rad
+            }
         }
-        let flank = wound_rad.signum();
-        flank * (self.stiffness_nm_rad * pressed_rad + flank * damping_nm).max(0.0)
+    }
+
+    /// Whether it is as stiff as any is simulated: how it rings, the logs do not show.
+    pub fn is_stiff(&self) -> bool {
+        self.natural_rad_s >= HIGHEST_RAD_S
+    }
+
+    /// Whether it has a gap, whose flanks meet and part.
+    pub fn has_gap(&self) -> bool {
+        self.half_gap_rad > 0.0
     }
 
     /// By how much it is wound up at most by torques up to this, N m, and where its flanks meet,

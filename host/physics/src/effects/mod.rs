@@ -61,7 +61,7 @@ mod tests;
 
 pub use base_compliance::BaseSpring;
 pub use effect::{Effect, Law, SMOOTH_DIFFERENCE};
-pub use gear::{Coupling, Gear};
+pub use gear::{Coupling, Flank, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, OnSlide, Parameter, Scope, Site, ValueBehind};
 pub use look_up::{NameMatch, listed, look_up};
 pub use memory::{BodyState, MemoryCell, SenseMemory};

@@ -4,7 +4,7 @@
 
 use super::memory::EffectMemory;
 use super::plant::Plant;
-use crate::effects::BodyState;
+use crate::effects::{BodyState, Flank};
 
 /// Share of a motor's torque below which friction may leave it anywhere between the flanks.
 const LIGHT_SHARE: f64 = 0.01;
@@ -19,6 +19,8 @@ pub(super) struct Auxiliary {
     pub speed: Vec<f64>,
     /// The change of that, found with the accelerations of the joints.
     pub slope: Vec<f64>,
+    /// Which flank of each motor's gear pushes.
+    pub flank: Vec<Flank>,
 }
 
 impl Auxiliary {
@@ -29,6 +31,7 @@ impl Auxiliary {
             place: vec![0.0; bodies],
             speed: vec![0.0; bodies],
             slope: vec![0.0; bodies],
+            flank: vec![Flank::None; bodies],
         }
     }
 
@@ -36,6 +39,22 @@ impl Auxiliary {
     pub fn copy_motion(&mut self, from: &Auxiliary) {
         self.place.copy_from_slice(&from.place);
         self.speed.copy_from_slice(&from.speed);
+        self.flank.copy_from_slice(&from.flank);
+    }
+
+    /// How far and how fast a motor is ahead of its joint at this angle and speed, rad and rad/s.
+    pub fn wound(&self, joint: usize, [angle, speed]: [f64; 2]) -> [f64; 2] {
+        [self.place[joint] - angle, self.speed[joint] - speed]
+    }
+
+    /// Says which flanks push where the joints are at these angles and speeds.
+    pub fn find_flanks(&mut self, plant: &Plant, (angle, speed): (&[f64], &[f64])) {
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            if let Some(coupling) = plan.coupling {
+                let [wound, winding] = self.wound(joint, [angle[joint], speed[joint]]);
+                self.flank[joint] = coupling.flank(wound, winding);
+            }
+        }
     }
 
     /// Where the base is and how fast it moves, m and m/s.

@@ -148,8 +148,9 @@ impl<R: Rows> Forces<R> {
                 _ => plan.drive_torque_nm(input, 0.0.into(), motor_speed, &self.memory.0),
             };
             if let Some(coupling) = plan.coupling {
-                let wound = self.auxiliary.place[joint] - at.angle[joint];
-                let passed_on = coupling.torque_nm(wound, motor_speed - speed);
+                let auxiliary = &self.auxiliary;
+                let [wound, winding] = auxiliary.wound(joint, [at.angle[joint], speed]);
+                let passed_on = coupling.torque_on_nm(auxiliary.flank[joint], wound, winding);
                 self.auxiliary.slope[joint] = (drive - passed_on) / coupling.inertia_kg_m2;
                 drive = passed_on;
             }
@@ -285,6 +286,7 @@ impl<R: Rows> Forces<R> {
             }
         };
         (self.auxiliary).recall(plant, memory, (angle, speed), holding_nm);
+        self.auxiliary.find_flanks(plant, (angle, speed));
     }
 
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the

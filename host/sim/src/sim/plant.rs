@@ -6,7 +6,7 @@ mod readings;
 use super::hidden::HiddenUnknown;
 use super::joint_plan::JointPlan;
 use crate::dynamics::SpatialEquations;
-use crate::effects::{BaseSpring, CONTROLS, EFFECTS, Needs, PLACEBO, Rig};
+use crate::effects::{BaseSpring, CONTROLS, Coupling, EFFECTS, Needs, PLACEBO, Rig};
 use crate::model::{Angles, MeasuredSignal, Model};
 use crate::motion::Motion;
 pub(super) use rate_reading::RateReading;
@@ -51,6 +51,8 @@ pub struct Plant {
     /// Longest step that follows motors which turn apart from their joints, and a base that gives
     /// way, s; infinite without.
     pub(super) auxiliary_step_s: f64,
+    /// Whether any gear has a gap, whose flanks meet and part.
+    pub(super) has_flanks: bool,
     pub(super) step_s: f64,
     /// Whether every torque stays until an input changes or a joint stops or starts.
     pub(super) torques_stay: bool,
@@ -128,6 +130,8 @@ impl Plant {
             remembers: of_joints + if base.is_some() { 2 } else { 0 },
             hidden: HiddenUnknown::all(&joints),
             auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
+            has_flanks: (joints.iter().filter_map(|joint| joint.coupling))
+                .any(|coupling| coupling.has_gap()),
             base,
             tree: rig.tree.as_ref().map(SpatialEquations::new),
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
@@ -206,8 +210,9 @@ fn each<T>(model: &Model, value: impl Fn(usize) -> T) -> Vec<T> {
 }
 
 /// Longest step, in parts of the time in which a motor swings against its joint by 1 rad, that
-/// integrates it well; so for a base.
+/// integrates it well; so for a base. Of a stiff gear only the knocks matter, which steps end at.
 const AUXILIARY_STEP: f64 = 0.4;
+const STIFF_STEP: f64 = 0.8;
 
 /// Longest step over which laws that remember from step to step, a grip that slips for one, go on
 /// well, s.
@@ -224,10 +229,17 @@ fn step_s(of_model_s: f64, remembers: bool) -> f64 {
 
 /// See [`Plant::auxiliary_step_s`].
 fn auxiliary_step_s(joints: &[JointPlan], base: Option<BaseSpring>) -> f64 {
+    let of_motor = |coupling: Coupling| {
+        let share = if coupling.is_stiff() {
+            STIFF_STEP
+        } else {
+            AUXILIARY_STEP
+        };
+        share / coupling.natural_rad_s
+    };
     let motors = joints.iter().filter_map(|joint| joint.coupling);
-    let frequencies = motors.map(|coupling| coupling.natural_rad_s);
-    let frequencies = frequencies.chain(base.map(|base| base.natural_rad_s()));
-    let steps = frequencies.map(|natural_rad_s| AUXILIARY_STEP / natural_rad_s);
+    let base = base.map(|base| AUXILIARY_STEP / base.natural_rad_s());
+    let steps = motors.map(of_motor).chain(base);
     steps.fold(f64::INFINITY, f64::min)
 }
 

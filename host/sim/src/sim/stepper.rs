@@ -13,6 +13,8 @@ use super::plant::Plant;
 use super::rows::Rows;
 use crate::dynamics::RungeKutta;
 use crate::effects::MemoryCell;
+use crossing::Crossing;
+use integration::hold;
 
 /// Into how many steps of what length, s, a span is cut by the longest step.
 #[inline]
@@ -36,44 +38,23 @@ pub(super) enum Contact {
 #[derive(Debug, Clone, Copy)]
 struct Event {
     joint: usize,
-    /// Share of the step after which it comes.
-    share: f64,
-    /// What crosses zero then, at the beginning and at the end of the step: the joint's speed, or
-    /// by how much it is pushed beyond its breakaway torque.
-    ends: [f64; 2],
+    /// Of the joint's speed, or of how much it is pushed beyond its breakaway torque.
+    crossing: Crossing,
     /// What the contact is from then on.
     contact: Contact,
 }
 
 impl Event {
-    /// By a straight line between the ends.
     fn between(joint: usize, ends: [f64; 2], contact: Contact) -> Event {
-        let [before, after] = ends;
         Event {
             joint,
-            share: (before / (before - after)).clamp(0.0, 1.0),
-            ends,
+            crossing: Crossing::between(ends),
             contact,
         }
     }
 
-    /// By the parabola through the ends and what was found at the share so far.
-    fn bent(self, found: f64) -> Event {
-        let [before, after] = self.ends;
-        let share = self.share;
-        // before + slope s + bend s^2
-        let bend = ((found - before) / share - (after - before)) / (share - 1.0);
-        let slope = after - before - bend;
-        let root = (slope * slope - 4.0 * bend * before).sqrt();
-        let better = -2.0 * before / (slope + root.copysign(slope));
-        if (0.0..=1.0).contains(&better) {
-            Event {
-                share: better,
-                ..self
-            }
-        } else {
-            self
-        }
+    fn by_share(a: &Event, b: &Event) -> std::cmp::Ordering {
+        a.crossing.share.total_cmp(&b.crossing.share)
     }
 }
 
@@ -91,6 +72,8 @@ pub(super) struct Stepper<R: Rows> {
     start_angle: R::Of<f64>,
     start_speed: R::Of<f64>,
     start_auxiliary: Auxiliary,
+    /// By how much each gear's flanks were pressed, rad.
+    start_pressed_rad: R::Of<f64>,
     /// Accelerations, and for held joints the torque that holds them.
     slope: R::Of<f64>,
     /// Whether those, and the excess, are of the present state, contacts and inputs.
@@ -120,6 +103,7 @@ impl<R: Rows> Stepper<R> {
             start_angle: zeros(),
             start_speed: zeros(),
             start_auxiliary: Auxiliary::new(plant),
+            start_pressed_rad: zeros(),
             slope: zeros(),
             slope_is_known: false,
             excess: zeros(),
@@ -199,18 +183,13 @@ impl<R: Rows> Stepper<R> {
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
             self.start_auxiliary.copy_motion(&self.forces.auxiliary);
-            self.step(plant, inputs, left);
-            let Some(event) = self.first_event(plant, inputs) else {
-                return;
-            };
-            self.step_again(plant, inputs, event.share * left);
-            let event = event.bent(self.crossing(plant, inputs, event));
-            self.step_again(plant, inputs, event.share * left);
-            if event.contact == Contact::Held {
-                self.speed[event.joint] = 0.0;
+            let taken = self.step_to_knock(plant, inputs, left);
+            left -= taken.span_s;
+            if let Some(event) = self.first_event(plant, inputs) {
+                left += self.go_to(plant, inputs, event, taken.span_s);
+            } else if let Some(joint) = taken.knock {
+                self.meet_or_part(joint);
             }
-            self.contact[event.joint] = event.contact;
-            left *= 1.0 - event.share;
             if left <= 1e-12 {
                 return;
             }
@@ -226,6 +205,19 @@ impl<R: Rows> Stepper<R> {
         self.slope_is_known = false;
     }
 
+    /// Goes back to the event in a step of `span_s` s, and on with what it makes of the contact; how
+    /// much of the step is left, s.
+    fn go_to(&mut self, plant: &Plant, inputs: &[DriveInput], event: Event, span_s: f64) -> f64 {
+        self.step_again(plant, inputs, event.crossing.share * span_s);
+        let crossing = (event.crossing).bent(self.crossed(plant, inputs, event));
+        self.step_again(plant, inputs, crossing.share * span_s);
+        if event.contact == Contact::Held {
+            self.speed[event.joint] = 0.0;
+        }
+        self.contact[event.joint] = event.contact;
+        span_s * (1.0 - crossing.share)
+    }
+
     /// Takes another step from where the last one began.
     fn step_again(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
         // What is known is of the step's end.
@@ -237,7 +229,7 @@ impl<R: Rows> Stepper<R> {
     }
 
     /// What an event's zero is of, at the present state.
-    fn crossing(&mut self, plant: &Plant, inputs: &[DriveInput], event: Event) -> f64 {
+    fn crossed(&mut self, plant: &Plant, inputs: &[DriveInput], event: Event) -> f64 {
         match event.contact {
             Contact::Held => self.speed[event.joint],
             Contact::Free | Contact::Sliding(_) => {
@@ -277,7 +269,9 @@ impl<R: Rows> Stepper<R> {
         let stop = self.first_stop();
         let release = self.first_release(plant, inputs);
         match (stop, release) {
-            (Some(stop), Some(release)) if release.share < stop.share => Some(release),
+            (Some(stop), Some(release)) if release.crossing.share < stop.crossing.share => {
+                Some(release)
+            }
             (stop, release) => stop.or(release),
         }
     }
@@ -290,7 +284,7 @@ impl<R: Rows> Stepper<R> {
                 let ends = [self.start_speed[joint], self.speed[joint]];
                 Event::between(joint, ends, Contact::Held)
             })
-            .min_by(|a, b| a.share.total_cmp(&b.share))
+            .min_by(Event::by_share)
     }
 
     /// The held joint that the motion of others, its own gear that is wound up, or the base first
@@ -309,7 +303,7 @@ impl<R: Rows> Stepper<R> {
                 let ends = [before[joint], self.excess[joint]];
                 Event::between(joint, ends, Contact::Sliding(self.push_direction(joint)))
             })
-            .min_by(|a, b| a.share.total_cmp(&b.share))
+            .min_by(Event::by_share)
     }
 
     /// Lets go of held joints that are pushed beyond their breakaway torque, the most pushed first.
@@ -361,6 +355,8 @@ impl<R: Rows> Stepper<R> {
     }
 }
 
+mod crossing;
 mod integration;
+mod knocks;
 #[cfg(test)]
 mod tests;
