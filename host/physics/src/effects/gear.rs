@@ -18,13 +18,16 @@ pub struct Gear {
 /// simulated as this stiff: logs at 100 Hz hold nothing of a faster ringing, and it would cost
 /// steps.
 pub(super) const HIGHEST_RAD_S: f64 = 400.0;
+/// The same of a gear with a gap, beside a joint of any inertia. Its flanks do not ring, so that
+/// steps may be longer, and must not give: softer ones show in readings of 12 bit.
+const HIGHEST_OF_FLANKS_RAD_S: f64 = 1000.0;
 
 impl Gear {
     /// Rigid, and without inertia of the motor; flanks that meet hardly rebound.
     pub const RIGID: Gear = Gear {
         inertia_kg_m2: 0.0,
         stiffness_nm_rad: f64::INFINITY,
-        damping_ratio: 0.7,
+        damping_ratio: 1.0,
         gap_rad: 0.0,
     };
 }
@@ -46,6 +49,8 @@ pub struct Coupling {
     pub inertia_kg_m2: f64,
     /// Natural frequency of the motor against a standing joint, rad/s.
     pub natural_rad_s: f64,
+    /// Whether it is as stiff as any is simulated: how it rings, the logs do not show.
+    pub is_stiff: bool,
     stiffness_nm_rad: f64,
     damping_nm_s_rad: f64,
     half_gap_rad: f64,
@@ -56,10 +61,17 @@ impl Coupling {
     pub fn of(gear: &Gear) -> Option<Coupling> {
         let inertia_kg_m2 = gear.inertia_kg_m2;
         let natural_rad_s = (gear.stiffness_nm_rad / inertia_kg_m2).sqrt();
-        let natural_rad_s = natural_rad_s.min(HIGHEST_RAD_S);
+        let highest_rad_s = if gear.gap_rad > 0.0 {
+            HIGHEST_OF_FLANKS_RAD_S
+        } else {
+            HIGHEST_RAD_S
+        };
+        let is_stiff = natural_rad_s >= highest_rad_s;
+        let natural_rad_s = natural_rad_s.min(highest_rad_s);
         (inertia_kg_m2 > 0.0).then_some(Coupling {
             inertia_kg_m2,
             natural_rad_s,
+            is_stiff,
             stiffness_nm_rad: inertia_kg_m2 * natural_rad_s.powi(2),
             damping_nm_s_rad: 2.0 * gear.damping_ratio * inertia_kg_m2 * natural_rad_s,
             half_gap_rad: 0.5 * gear.gap_rad,
@@ -106,9 +118,18 @@ impl Coupling {
         }
     }
 
-    /// Whether it is as stiff as any is simulated: how it rings, the logs do not show.
-    pub fn is_stiff(&self) -> bool {
-        self.natural_rad_s >= HIGHEST_RAD_S
+    /// The same beside a joint of this inertia, kg m^2, where nothing says how stiff the flanks are:
+    /// they swing at their highest frequency however light that joint is beside the motor.
+    pub fn beside(&self, inertia_kg_m2: f64) -> Coupling {
+        if !(self.is_stiff && self.has_gap()) {
+            return *self;
+        }
+        let share = inertia_kg_m2 / (inertia_kg_m2 + self.inertia_kg_m2);
+        Coupling {
+            stiffness_nm_rad: share * self.stiffness_nm_rad,
+            damping_nm_s_rad: share * self.damping_nm_s_rad,
+            ..*self
+        }
     }
 
     /// Whether it has a gap, whose flanks meet and part.

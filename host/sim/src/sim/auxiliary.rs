@@ -4,7 +4,7 @@
 
 use super::memory::EffectMemory;
 use super::plant::Plant;
-use crate::effects::{BodyState, Flank};
+use crate::effects::{BodyState, Coupling, Flank};
 
 /// Share of a motor's torque below which friction may leave it anywhere between the flanks.
 const LIGHT_SHARE: f64 = 0.01;
@@ -21,6 +21,8 @@ pub(super) struct Auxiliary {
     pub slope: Vec<f64>,
     /// Which flank of each motor's gear pushes.
     pub flank: Vec<Flank>,
+    /// The gear of each motor as it is beside its joint at present; `None` where it is rigid.
+    pub coupling: Vec<Option<Coupling>>,
 }
 
 impl Auxiliary {
@@ -32,6 +34,7 @@ impl Auxiliary {
             speed: vec![0.0; bodies],
             slope: vec![0.0; bodies],
             flank: vec![Flank::None; bodies],
+            coupling: plant.joints.iter().map(|plan| plan.coupling).collect(),
         }
     }
 
@@ -48,9 +51,9 @@ impl Auxiliary {
     }
 
     /// Says which flanks push where the joints are at these angles and speeds.
-    pub fn find_flanks(&mut self, plant: &Plant, (angle, speed): (&[f64], &[f64])) {
-        for (joint, plan) in plant.joints.iter().enumerate() {
-            if let Some(coupling) = plan.coupling {
+    pub fn find_flanks(&mut self, (angle, speed): (&[f64], &[f64])) {
+        for joint in 0..self.coupling.len() {
+            if let Some(coupling) = self.coupling[joint] {
                 let [wound, winding] = self.wound(joint, [angle[joint], speed[joint]]);
                 self.flank[joint] = coupling.flank(wound, winding);
             }
@@ -80,7 +83,7 @@ impl Auxiliary {
         holding_nm: impl Fn(usize) -> f64,
     ) {
         for (joint, plan) in plant.joints.iter().enumerate() {
-            let (Some(coupling), Some(cell)) = (plan.coupling, plan.gear_cell) else {
+            let (Some(coupling), Some(cell)) = (self.coupling[joint], plan.gear_cell) else {
                 continue;
             };
             let mut wound = BodyState::from(memory.0[cell]);

@@ -147,7 +147,7 @@ impl<R: Rows> Forces<R> {
                 }
                 _ => plan.drive_torque_nm(input, 0.0.into(), motor_speed, &self.memory.0),
             };
-            if let Some(coupling) = plan.coupling {
+            if let Some(coupling) = self.auxiliary.coupling[joint] {
                 let auxiliary = &self.auxiliary;
                 let [wound, winding] = auxiliary.wound(joint, [at.angle[joint], speed]);
                 let passed_on = coupling.torque_on_nm(auxiliary.flank[joint], wound, winding);
@@ -286,7 +286,41 @@ impl<R: Rows> Forces<R> {
             }
         };
         (self.auxiliary).recall(plant, memory, (angle, speed), holding_nm);
-        self.auxiliary.find_flanks(plant, (angle, speed));
+        self.auxiliary.find_flanks((angle, speed));
+    }
+
+    /// Finds how gears are beside their joints about these angles.
+    pub fn find_couplings(&mut self, plant: &Plant, angle: &[f64]) {
+        if !plant.has_flanks {
+            return;
+        }
+        for joint in 0..angle.len() {
+            if let Some(coupling) = plant.joints[joint].coupling {
+                let inertia_kg_m2 = 1.0 / self.yielding(plant, joint, angle);
+                self.auxiliary.coupling[joint] = Some(coupling.beside(inertia_kg_m2));
+            }
+        }
+    }
+
+    /// How much faster a joint speeds up by a torque of 1 N m more, all joints being free,
+    /// rad/s^2.
+    fn yielding(&mut self, plant: &Plant, joint: usize, angle: &[f64]) -> f64 {
+        let n = angle.len();
+        let (still, contact) = (vec![0.0; n], vec![Contact::Free; n]);
+        let at = StateView {
+            angle,
+            speed: &still,
+            contact: &contact,
+        };
+        self.held.as_mut().fill(false);
+        let [rest, pushed] = [0.0, 1.0].map(|torque_nm| {
+            self.torque.as_mut().fill(0.0);
+            self.torque[joint] = torque_nm;
+            let mut out = vec![0.0; n];
+            self.solve(plant, at, &mut out);
+            out[joint]
+        });
+        pushed - rest
     }
 
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the

@@ -210,9 +210,9 @@ fn each<T>(model: &Model, value: impl Fn(usize) -> T) -> Vec<T> {
 }
 
 /// Longest step, in parts of the time in which a motor swings against its joint by 1 rad, that
-/// integrates it well; so for a base. Of a stiff gear only the knocks matter, which steps end at.
+/// integrates it well; so for a base. Of stiff flanks only the knocks matter, which steps end at.
 const AUXILIARY_STEP: f64 = 0.4;
-const STIFF_STEP: f64 = 0.8;
+const STIFF_STEP: f64 = 1.2;
 
 /// Longest step over which laws that remember from step to step, a grip that slips for one, go on
 /// well, s.
@@ -230,7 +230,7 @@ fn step_s(of_model_s: f64, remembers: bool) -> f64 {
 /// See [`Plant::auxiliary_step_s`].
 fn auxiliary_step_s(joints: &[JointPlan], base: Option<BaseSpring>) -> f64 {
     let of_motor = |coupling: Coupling| {
-        let share = if coupling.is_stiff() {
+        let share = if coupling.is_stiff && coupling.has_gap() {
             STIFF_STEP
         } else {
             AUXILIARY_STEP

@@ -112,6 +112,7 @@ impl<R: Rows> Stepper<R> {
         };
         stepper.forces.memory = EffectMemory::beginning(plant, angle, speed);
         stepper.forces.find_kicks(plant, angle);
+        stepper.forces.find_couplings(plant, angle);
         for (joint, plan) in plant.joints.iter().enumerate() {
             stepper.angle[joint] = angle[joint];
             stepper.speed[joint] = speed[joint];

@@ -11,7 +11,6 @@ use crate::model::Drive;
 use crate::sim::drive::OwnReading;
 use crate::sim::plant::Plant;
 use crate::sim::rows::Rows;
-use crate::sim::stepper::Contact;
 
 impl<R: Rows> Forces<R> {
     /// Finds how hard commands that jump kick joints about these angles.
@@ -35,26 +34,9 @@ impl<R: Rows> Forces<R> {
         if (0..n).all(|joint| jump_nm(joint) == 0.0) {
             return;
         }
-        let (still, contact) = (vec![0.0; n], vec![Contact::Free; n]);
-        let at = StateView {
-            angle,
-            speed: &still,
-            contact: &contact,
-        };
-        let mut accelerations = |pushed: Option<usize>| {
-            self.torque.as_mut().fill(0.0);
-            self.held.as_mut().fill(false);
-            if let Some(joint) = pushed {
-                self.torque[joint] = 1.0;
-            }
-            let mut out = vec![0.0; n];
-            self.solve(plant, at, &mut out);
-            out
-        };
-        let rest = accelerations(None);
         let kick = |joint: usize| match jump_nm(joint) {
             0.0 => 0.0,
-            jump_nm => jump_nm * (accelerations(Some(joint))[joint] - rest[joint]),
+            jump_nm => jump_nm * self.yielding(plant, joint, angle),
         };
         let kicks: Vec<f64> = (0..n).map(kick).collect();
         self.kicks.as_mut().copy_from_slice(&kicks);

@@ -38,15 +38,15 @@ impl<R: Rows> Stepper<R> {
 
     fn step_to_first_knock(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) -> Taken {
         for joint in 0..self.len() {
-            self.start_pressed_rad[joint] = self.pressed_rad(plant, joint);
+            self.start_pressed_rad[joint] = self.pressed_rad(joint);
         }
         self.step(plant, inputs, h);
-        let Some((joint, crossing)) = self.first_knock(plant) else {
+        let Some((joint, crossing)) = self.first_knock() else {
             let (span_s, knock) = (h, None);
             return Taken { span_s, knock };
         };
         self.step_again(plant, inputs, crossing.share * h);
-        let crossing = crossing.bent(self.pressed_rad(plant, joint));
+        let crossing = crossing.bent(self.pressed_rad(joint));
         let span_s = crossing.share * h;
         self.step_again(plant, inputs, span_s);
         let knock = Some(joint);
@@ -54,23 +54,20 @@ impl<R: Rows> Stepper<R> {
     }
 
     /// By how much a gear's flanks are pressed, rad; far apart without a gap.
-    fn pressed_rad(&self, plant: &Plant, joint: usize) -> f64 {
+    fn pressed_rad(&self, joint: usize) -> f64 {
         let auxiliary = &self.forces.auxiliary;
         let [wound, winding] = auxiliary.wound(joint, [self.angle[joint], self.speed[joint]]);
-        let gapped = plant.joints[joint].coupling.filter(Coupling::has_gap);
+        let gapped = auxiliary.coupling[joint].filter(Coupling::has_gap);
         gapped.map_or(f64::NEG_INFINITY, |coupling| {
             coupling.pressed_rad(auxiliary.flank[joint], wound, winding)
         })
     }
 
     /// The joint whose flanks first meet or part in the step just taken.
-    fn first_knock(&self, plant: &Plant) -> Option<(usize, Crossing)> {
+    fn first_knock(&self) -> Option<(usize, Crossing)> {
         let crossings = (0..self.len()).filter_map(|joint| {
             let pushes = self.forces.auxiliary.flank[joint] != Flank::None;
-            let ends = [
-                self.start_pressed_rad[joint],
-                self.pressed_rad(plant, joint),
-            ];
+            let ends = [self.start_pressed_rad[joint], self.pressed_rad(joint)];
             // What met or parted at the step's beginning lies on either side of it by a rounding.
             let crosses = (ends[1] > 0.0) != pushes;
             crosses.then(|| (joint, Crossing::between(ends)))

@@ -182,15 +182,16 @@ fn a_motor_crosses_its_gap_before_its_joint_moves() {
     assert!((late - (of_both - 0.05 / 3.0)).abs() < 5e-3, "{late}");
 }
 
-/// Angle of a joint that friction holds between the knocks of a motor which goes to and fro.
-fn knocked_rad(step_s: f64) -> f64 {
-    let play: (&str, &[f64]) = ("gear_backlash", &[1e-3, 0.1]);
+/// Angle of a joint that friction holds between the knocks of a motor of this inertia, kg m^2,
+/// which goes to and fro.
+fn knocked_rad(motor: f64, step_s: f64) -> f64 {
+    let play: (&str, &[f64]) = ("gear_backlash", &[motor, 0.1]);
     let plant = weightless(&[("coulomb", &[0.03]), play]);
     let mut stepper = Stepper::<FixedRows<1>>::new(&plant, &[0.0], &[0.0]);
     let steps = (0.1 / step_s).round() as usize;
     for torque_nm in [0.05, -0.08, 0.1, -0.06, 0.02, 0.09] {
         let pull = DriveInput {
-            input: torque_nm,
+            input: torque_nm * motor / 1e-3,
             ..DriveInput::ZERO
         };
         for _ in 0..steps {
@@ -202,10 +203,13 @@ fn knocked_rad(step_s: f64) -> f64 {
 
 #[test]
 fn knocks_come_when_they_do_whatever_the_step() {
-    let exact = knocked_rad(5e-5);
-    assert!(exact.abs() > 0.05, "{exact}");
-    for step_s in [1e-2, 5e-3, 2e-3] {
-        let off_rad = (knocked_rad(step_s) - exact).abs();
-        assert!(off_rad < 1e-3, "{step_s} s: {off_rad}");
+    // A motor half as heavy as its joint, and one twenty times as heavy.
+    for motor in [1e-3, 4e-2] {
+        let exact = knocked_rad(motor, 5e-5);
+        assert!((0.05..10.0).contains(&exact.abs()), "{exact}");
+        for step_s in [1e-2, 5e-3, 2e-3] {
+            let off_rad = (knocked_rad(motor, step_s) - exact).abs();
+            assert!(off_rad < 2e-3, "{motor} kg m^2, {step_s} s: {off_rad}");
+        }
     }
 }
