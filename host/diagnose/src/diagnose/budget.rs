@@ -20,6 +20,8 @@ pub(super) const SECOND_LOOKS: usize = 3 * FINALISTS;
 pub(super) const BEAM: usize = 5;
 /// Partners tried for each set of the beam.
 pub(super) const PARTNERS: usize = 5;
+/// More candidates than three joints have: most act where nothing is missing.
+pub(super) const MANY: usize = 120;
 /// Fewer training samples than this are few.
 pub(super) const FEW_SAMPLES: usize = 1500;
 /// Random starts of each candidate where samples are few, at most, and their iterations.

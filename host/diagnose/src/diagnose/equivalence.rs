@@ -133,7 +133,7 @@ impl Evaluator<'_> {
         let readings = windows.map(|motion| predicted(&found.model, &data, &window_starts, motion));
         let readings: Vec<Vec<Vec<f64>>> = readings.collect();
         let data = data.measuring(&readings);
-        let jumping = chosen.set.iter().filter(|effect| effect.jumps());
+        let jumping = (chosen.set.iter()).filter(|effect| effect.jumps(&found.model));
         Some(Predicted {
             own_cost: left(&data, &window_starts, &found.model, &found.free),
             effective_share: effective_share(&evaluation.training, found),

@@ -4,7 +4,7 @@
 //! fit as far as derivatives known before lead; the best third, but the best few only where the
 //! rest is hopeless beside the first, gets a look, for which derivatives are taken again.
 
-use super::budget::{FINALISTS, FIRST_LOOK_STEPS, LOOK, SECOND_LOOKS};
+use super::budget::{FINALISTS, FIRST_LOOK_STEPS, LOOK, MANY, SECOND_LOOKS};
 use super::evaluator::{Evaluator, Reach};
 use super::hypothesis::Hypothesis;
 use crate::fitting::{FitOptions, InitialGuess, PredictionChange, ProjectedResidual};
@@ -14,10 +14,8 @@ use rayon::prelude::*;
 /// A guess that promises less than this share of what the candidate's best one does is not tried.
 const WORTH: f64 = 0.05;
 
-/// Of more candidates than three joints have, most act where nothing is missing: beyond the first
-/// few dozen, those that promise less than this share of what the best one does are taken as their
-/// guess is, without a glance.
-const MANY: usize = 120;
+/// Of many candidates, those beyond the first few dozen that promise less than this share of what
+/// the best one does are taken as their guess is, without a glance.
 const ALWAYS_GLANCED: usize = 60;
 const WORTH_A_GLANCE: f64 = 0.005;
 

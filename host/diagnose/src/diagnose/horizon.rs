@@ -1,7 +1,7 @@
 //! Over how long a run candidates are sought, and over how long they are judged.
 
 use super::block_errors::{gain, paired};
-use super::budget::{EVALUATE, FINISH};
+use super::budget::{EVALUATE, FAR_BEHIND, FINISH, MANY};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::verdict::FAR_OFF;
@@ -20,6 +20,8 @@ struct MostGained {
     gain: f64,
     /// Whether one of them leaves nothing but noise.
     at_noise_floor: bool,
+    /// Whether one of them leaves no more than noise excuses.
+    is_followed: bool,
 }
 
 impl Evaluator<'_> {
@@ -35,8 +37,9 @@ impl Evaluator<'_> {
             return;
         }
         let whole = self.most_gained(leaders, Horizon::Whole);
-        // No shorter run shows more than one that leaves nothing but noise.
-        if whole.at_noise_floor {
+        // No shorter run shows more than one that leaves nothing but noise; nor, in space, where a
+        // horizon takes minutes, than one that is not lost.
+        if whole.at_noise_floor || self.candidates.len() > MANY && whole.is_followed {
             return;
         }
         let shorter = horizons[1..].par_iter();
@@ -74,9 +77,7 @@ impl Evaluator<'_> {
             return;
         }
         // Where little more than noise is left, a shorter run only shows less.
-        let lost = leaders
-            .iter()
-            .all(|leader| leader.deciding_mean() > FAR_OFF);
+        let lost = !leaders.iter().any(is_followed);
         if !self.lengthen_horizon(leaders, sizes) && lost {
             self.shorten_horizon(sizes);
         }
@@ -175,15 +176,17 @@ impl Evaluator<'_> {
             hypothesis
         };
         let base = evaluated(&self.base);
-        let leaders: Vec<Hypothesis> = { leaders.par_iter().take(LEADERS) }
-            .map(evaluated)
-            .collect();
+        let limit = FAR_BEHIND * leaders.first().map_or(0.0, |first| first.search_mean);
+        let leading = leaders.iter().take_while(|l| l.search_mean <= limit);
+        let leading: Vec<&Hypothesis> = leading.take(LEADERS).collect();
+        let leaders: Vec<Hypothesis> = leading.into_par_iter().map(evaluated).collect();
         let gained =
             |leader: &Hypothesis| gain(&paired(base.deciding()?, leader.deciding()?)).into();
         let gains = leaders.iter().filter_map(gained);
         MostGained {
             gain: gains.fold(f64::NEG_INFINITY, f64::max),
             at_noise_floor: leaders.iter().any(|leader| self.at_noise_floor(leader)),
+            is_followed: leaders.iter().any(is_followed),
         }
     }
 
@@ -223,6 +226,11 @@ impl Evaluator<'_> {
         (self.horizon, self.training, self.held_out) = (horizon, training, held_out);
         self.show_best(sizes);
     }
+}
+
+/// Whether a hypothesis leaves no more than noise excuses over the runs that it is judged by.
+fn is_followed(hypothesis: &Hypothesis) -> bool {
+    hypothesis.deciding_mean() <= FAR_OFF
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Fits of candidates from other starts, where false valleys are many: few samples, or a law that
 //! jumps.
 
-use super::budget::{FINISH, RESTART_LOOK, RESTARTS, START_ITERATIONS};
+use super::budget::{
+    FAR_BEHIND, FINALISTS, FINISH, MANY, RESTART_LOOK, RESTARTS, START_ITERATIONS,
+};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::multistart::{Valleys, scattered};
@@ -37,12 +39,26 @@ impl Evaluator<'_> {
         fits
     }
 
+    /// Whether one of many candidates leaves so much less than the base model that it is in no false
+    /// valley. Of few each is fitted from other starts nevertheless.
+    pub fn is_led(&self, sorted: &[Hypothesis]) -> bool {
+        let is_ahead =
+            |leader: &Hypothesis| FAR_BEHIND * leader.search_mean < self.base.search_mean;
+        self.candidates.len() > MANY && sorted.first().is_some_and(is_ahead)
+    }
+
     /// Fits candidates whose law jumps from the values the model came with, and from each of the
     /// effect's start values: what is missing has bent the base values, and a fit that starts from
-    /// them may end in a false valley.
-    pub fn restart_jumping(&self, hypotheses: &mut [Hypothesis]) {
-        let jumping: Vec<&mut Hypothesis> =
-            hypotheses.iter_mut().filter(|h| jumps_alone(h)).collect();
+    /// them may end in a false valley. Of many candidates the best few, since every joint has laws
+    /// that jump.
+    pub fn restart_jumping(&self, sorted: &mut [Hypothesis]) {
+        let most = if self.candidates.len() > MANY {
+            FINALISTS
+        } else {
+            usize::MAX
+        };
+        let jumping = sorted.iter_mut().filter(|h| self.jumps_alone(h));
+        let jumping: Vec<&mut Hypothesis> = jumping.take(most).collect();
         jumping.into_par_iter().for_each(|hypothesis| {
             self.restart(hypothesis, |model, free, options| {
                 fit(model, free, &self.search, None, options)
@@ -53,7 +69,7 @@ impl Evaluator<'_> {
     /// The same for the one that leads, from shorter windows to longer ones: where even the windows
     /// of the search have false valleys.
     pub fn restage_leader(&self, sorted: &mut [Hypothesis]) {
-        if let Some(leader) = sorted.first_mut().filter(|h| jumps_alone(h)) {
+        if let Some(leader) = sorted.first_mut().filter(|h| self.jumps_alone(h)) {
             self.restart(leader, |model, free, options| {
                 fit_through_stages(model, free, &self.search, options)
             });
@@ -83,9 +99,9 @@ impl Evaluator<'_> {
         (looks.par_iter_mut()).for_each(|look| look.resume(&self.search, finish));
         hypothesis.improve(looks);
     }
-}
 
-/// Whether this is one effect alone, whose law jumps.
-fn jumps_alone(hypothesis: &Hypothesis) -> bool {
-    hypothesis.set.len() == 1 && hypothesis.set[0].jumps()
+    /// Whether this is one effect alone, whose law jumps.
+    fn jumps_alone(&self, hypothesis: &Hypothesis) -> bool {
+        matches!(hypothesis.set[..], [effect] if effect.jumps(&self.start))
+    }
 }

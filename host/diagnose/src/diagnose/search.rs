@@ -7,8 +7,8 @@
 //! the end.
 
 use super::budget::{
-    BEAM, EVALUATION_STEPS, FINALISTS, FINISH, FIRST_LOOK_STEPS, LOOK, PARTNERS, SECOND_LOOKS,
-    VALUE_STEPS, larger_steps, singles_steps,
+    BEAM, EVALUATION_STEPS, FAR_BEHIND, FINALISTS, FINISH, FIRST_LOOK_STEPS, LOOK, PARTNERS,
+    SECOND_LOOKS, VALUE_STEPS, larger_steps, singles_steps,
 };
 use super::evaluator::{Evaluator, Reach, every_change};
 use super::explanation::Explanation;
@@ -287,7 +287,8 @@ impl Evaluator<'_> {
         let starts = if self.small() { 6 } else { 2 };
         let hypotheses = self.first_look(&self.base, &self.changes, starts);
         let mut hypotheses = self.successive_halving(hypotheses);
-        if !hypotheses.iter().any(Hypothesis::follows_windows) {
+        let is_followed = hypotheses.iter().any(Hypothesis::follows_windows);
+        if !is_followed && !self.is_led(&hypotheses) {
             self.restart_jumping(&mut hypotheses);
             hypotheses.sort_by(Hypothesis::by_error);
             self.restage_leader(&mut hypotheses);
@@ -349,10 +350,16 @@ impl Evaluator<'_> {
     }
 }
 
-/// The sets that larger ones grow from: the best of the short windows, and the one that leaves
-/// least where it counts, which may lie behind five of the first that are nearly the same.
+/// The sets that larger ones grow from: the best of the short windows, unless they are far behind
+/// the first, and the one that leaves least where it counts, which may lie behind five of the first
+/// that are nearly the same.
 fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
-    let (first, behind) = sorted.split_at(BEAM.min(sorted.len()));
+    let far = FAR_BEHIND * sorted.first().map_or(0.0, |first| first.search_mean);
+    let near = sorted
+        .iter()
+        .take(BEAM)
+        .take_while(|h| h.search_mean <= far);
+    let (first, behind) = sorted.split_at(near.count());
     let mean = Hypothesis::deciding_mean;
     let least = first.iter().map(mean).fold(f64::INFINITY, f64::min);
     let best_behind = behind.iter().min_by(|a, b| mean(a).total_cmp(&mean(b)));

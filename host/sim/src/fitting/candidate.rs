@@ -1,9 +1,11 @@
 //! An effect of the library at a place of the model (a joint, all driven joints, the whole rig): by
 //! its name, its addresses, its start values.
 
-use crate::effects::{Effect, NameMatch, Parameter, SMOOTH_DIFFERENCE, Scope, listed, look_up};
+use crate::effects::{
+    Effect, NameMatch, Parameter, SMOOTH_DIFFERENCE, Scope, Site, listed, look_up,
+};
 use crate::error::{Error, Result};
-use crate::model::{EffectInstance, Model, ParameterPath, effect_on, named_at};
+use crate::model::{Drive, EffectInstance, Joint, Model, ParameterPath, effect_on, named_at};
 use std::fmt;
 
 /// An effect of the library at a joint, at all driven joints with the same values, or on the whole
@@ -83,10 +85,19 @@ impl Candidate {
         alone.has_effect(other.effect.info().id, other.joint)
     }
 
-    /// Whether its law jumps, so that the squared error over its values is full of steps and false
-    /// valleys.
-    pub fn jumps(&self) -> bool {
-        self.effect.difference() > SMOOTH_DIFFERENCE
+    /// Whether its law jumps in this model, so that the squared error over its values is full of
+    /// steps and false valleys. The command of a joint that regulates its angle moves on with the
+    /// joint, and a simulation takes a jump there as the mean over what it moves in a step.
+    pub fn jumps(&self, model: &Model) -> bool {
+        let regulates = |joint: &Joint| matches!(joint.drive, Drive::Position { .. });
+        let is_smoothed = || match self.joint {
+            Some(joint) => model.joints.get(joint).is_some_and(regulates),
+            None => (model.joints.iter())
+                .filter(|joint| joint.drive.is_driven())
+                .all(regulates),
+        };
+        let is_command = self.effect.info().site == Site::Command;
+        self.effect.difference() > SMOOTH_DIFFERENCE && !(is_command && is_smoothed())
     }
 
     /// What the effect's values are, in their order.

@@ -4,6 +4,7 @@
 //! A dead zone swallows one command more or not, and every such command is a stair. A fit is
 //! resumed from the lowest of the places that lie along its values, as far as these are uncertain.
 
+use super::candidate::Candidate;
 use super::covariance::inverse;
 use super::data::FitProblem;
 use super::fit::{Fit, FitOptions};
@@ -11,8 +12,8 @@ use super::jacobian::difference;
 use super::residual::residuals;
 use super::solve::{fit, fit_start_states};
 use super::window_start::WindowStart;
-use crate::effects::{SMOOTH_DIFFERENCE, Site, named};
-use crate::model::{Drive, Joint, Model, ParameterPath};
+use crate::effects::named;
+use crate::model::{Model, ParameterPath};
 use rayon::prelude::*;
 
 /// Places looked up on either side of a value.
@@ -210,22 +211,11 @@ fn variance(found: &Fit) -> f64 {
     found.residuals.mean_square().max(1.0)
 }
 
-/// Whether a value belongs to an effect whose law jumps in this model. The command of a joint that
-/// regulates its angle moves on with the joint, and a simulation takes a jump there as the mean
-/// over what it moves in a step.
+/// Whether a value belongs to an effect whose law jumps in this model.
 pub(super) fn jumps(path: &ParameterPath, model: &Model) -> bool {
     let ParameterPath::Effect { id, joint, .. } = path else {
         return false;
     };
-    let regulates = |joint: &Joint| matches!(joint.drive, Drive::Position { .. });
-    let is_smoothed = || match joint {
-        Some(joint) => model.joints.get(*joint).is_some_and(regulates),
-        None => (model.joints.iter())
-            .filter(|joint| joint.drive.is_driven())
-            .all(regulates),
-    };
-    named(id).is_some_and(|effect| {
-        let is_command = effect.info().site == Site::Command;
-        effect.difference() > SMOOTH_DIFFERENCE && !(is_command && is_smoothed())
-    })
+    let joint = *joint;
+    named(id).is_some_and(|effect| Candidate { effect, joint }.jumps(model))
 }
