@@ -3,7 +3,7 @@
 //! Between events every joint is free, sliding in a known direction, or held; the equations are
 //! then smooth and classical Runge-Kutta of fourth order integrates them. A sliding joint whose
 //! speed crosses zero ends the step there, and so does a held joint where the torque that holds it
-//! exceeds the breakaway torque; it then slides.
+//! exceeds the breakaway torque; it then slides. So do flanks of a gear that meet or part.
 
 use super::auxiliary::Auxiliary;
 use super::drive::DriveInput;
@@ -72,7 +72,7 @@ pub(super) struct Stepper<R: Rows> {
     start_angle: R::Of<f64>,
     start_speed: R::Of<f64>,
     start_auxiliary: Auxiliary,
-    /// By how much each gear's flanks were pressed, rad.
+    /// By how much each gear's flanks were pressed where the step began, rad.
     start_pressed_rad: R::Of<f64>,
     /// Accelerations, and for held joints the torque that holds them.
     slope: R::Of<f64>,
