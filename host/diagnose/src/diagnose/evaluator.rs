@@ -1,7 +1,7 @@
 //! What every hypothesis is fitted to and judged by: the motions cut for the search and for the
 //! evaluation, the base model fitted, the candidates.
 
-use super::budget::{BASE_STEPS, EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, HOPELESS, LOOK};
+use super::budget::{BASE_STEPS, EVALUATE, FAR_BEHIND, FEW_SAMPLES, FINISH, HOPELESS, LOOK, MANY};
 use super::candidates::candidates;
 use super::findings::ResidualStructure;
 use super::hypothesis::{Evaluation, Hypothesis};
@@ -304,6 +304,12 @@ impl<'a> Evaluator<'a> {
         let limit = self.limit(sorted.iter().take(1), least);
         let promising = sorted.iter().take_while(|h| h.search_mean <= limit);
         promising.count()
+    }
+
+    /// Whether there are more candidates than three joints have, of which most act where nothing is
+    /// missing.
+    pub fn has_many_candidates(&self) -> bool {
+        self.candidates.len() > MANY
     }
 
     /// Few samples and nothing held out: simulations are cheap, and a single motion has more false

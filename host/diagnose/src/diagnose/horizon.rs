@@ -1,7 +1,7 @@
 //! Over how long a run candidates are sought, and over how long they are judged.
 
 use super::block_errors::{gain, paired};
-use super::budget::{EVALUATE, FAR_BEHIND, FINISH, MANY};
+use super::budget::{EVALUATE, FAR_BEHIND, FINISH};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::verdict::FAR_OFF;
@@ -37,9 +37,9 @@ impl Evaluator<'_> {
             return;
         }
         let whole = self.most_gained(leaders, Horizon::Whole);
-        // No shorter run shows more than one that leaves nothing but noise; nor, in space, where a
-        // horizon takes minutes, than one that is not lost.
-        if whole.at_noise_floor || self.candidates.len() > MANY && whole.is_followed {
+        // No shorter run shows more than one that leaves nothing but noise; nor, where
+        // many candidates make a horizon costly, is one looked for beside a run that is not lost.
+        if whole.at_noise_floor || self.has_many_candidates() && whole.is_followed {
             return;
         }
         let shorter = horizons[1..].par_iter();

@@ -1,9 +1,7 @@
 //! Fits of candidates from other starts, where false valleys are many: few samples, or a law that
 //! jumps.
 
-use super::budget::{
-    FAR_BEHIND, FINALISTS, FINISH, MANY, RESTART_LOOK, RESTARTS, START_ITERATIONS,
-};
+use super::budget::{FAR_BEHIND, FINALISTS, FINISH, RESTART_LOOK, RESTARTS, START_ITERATIONS};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::multistart::{Valleys, scattered};
@@ -39,12 +37,12 @@ impl Evaluator<'_> {
         fits
     }
 
-    /// Whether one of many candidates leaves so much less than the base model that it is in no false
-    /// valley. Of few each is fitted from other starts nevertheless.
+    /// Whether one of many candidates leaves so much less than the base model that it is taken to
+    /// be in no false valley. Of few each is fitted from other starts nevertheless.
     pub fn is_led(&self, sorted: &[Hypothesis]) -> bool {
         let is_ahead =
             |leader: &Hypothesis| FAR_BEHIND * leader.search_mean < self.base.search_mean;
-        self.candidates.len() > MANY && sorted.first().is_some_and(is_ahead)
+        self.has_many_candidates() && sorted.first().is_some_and(is_ahead)
     }
 
     /// Fits candidates whose law jumps from the values the model came with, and from each of the
@@ -52,7 +50,7 @@ impl Evaluator<'_> {
     /// them may end in a false valley. Of many candidates the best few, since every joint has laws
     /// that jump.
     pub fn restart_jumping(&self, sorted: &mut [Hypothesis]) {
-        let most = if self.candidates.len() > MANY {
+        let most = if self.has_many_candidates() {
             FINALISTS
         } else {
             usize::MAX

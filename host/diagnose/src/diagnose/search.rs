@@ -355,11 +355,8 @@ impl Evaluator<'_> {
 /// that are nearly the same.
 fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
     let far = FAR_BEHIND * sorted.first().map_or(0.0, |first| first.search_mean);
-    let near = sorted
-        .iter()
-        .take(BEAM)
-        .take_while(|h| h.search_mean <= far);
-    let (first, behind) = sorted.split_at(near.count());
+    let near = sorted.iter().take_while(|h| h.search_mean <= far).count();
+    let (first, behind) = sorted.split_at(near.min(BEAM));
     let mean = Hypothesis::deciding_mean;
     let least = first.iter().map(mean).fold(f64::INFINITY, f64::min);
     let best_behind = behind.iter().min_by(|a, b| mean(a).total_cmp(&mean(b)));

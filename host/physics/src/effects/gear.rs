@@ -118,8 +118,8 @@ impl Coupling {
         }
     }
 
-    /// The same beside a joint of this inertia, kg m^2, where nothing says how stiff the flanks are:
-    /// they swing at their highest frequency however light that joint is beside the motor.
+    /// The same beside a joint of this inertia, kg m^2, where nothing says how stiff the flanks
+    /// are: they swing at their highest frequency however light that joint is beside the motor.
     pub fn beside(&self, inertia_kg_m2: f64) -> Coupling {
         if !(self.is_stiff && self.has_gap()) {
             return *self;
@@ -196,6 +196,28 @@ mod tests {
         }
         near(play.wound_rad(0.01, 0.01), 0.0125 + 0.025);
         assert_eq!(play.wound_rad(0.0, 0.01), 0.0);
+    }
+
+    #[test]
+    fn stiff_flanks_swing_as_fast_beside_any_joint() {
+        let (motor, gap_rad) = (2e-3, 0.1);
+        let gear = Gear {
+            inertia_kg_m2: motor,
+            gap_rad,
+            ..Gear::RIGID
+        };
+        for joint in [1e-4, 2e-3, f64::MAX] {
+            let play = Coupling::of(&gear).unwrap().beside(joint);
+            let stiffness_nm_rad = play.torque_nm(0.06, 0.0) / 0.01;
+            let swing_rad_s = (stiffness_nm_rad * (1.0 / motor + 1.0 / joint)).sqrt();
+            assert!(
+                (swing_rad_s - 1000.0).abs() < 1e-6,
+                "{joint}: {swing_rad_s}"
+            );
+        }
+        // A stiffness that is given stays.
+        let given = Coupling::of(&Gear { gap_rad, ..SPRING }).unwrap();
+        assert_eq!(given.beside(1e-4), given);
     }
 
     #[test]

@@ -232,3 +232,29 @@ fn joint(effect: Effect, at: Option<&str>, model: &Model) -> Result<Option<usize
         format!("name a {wanted} joint, or another effect"),
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Motor;
+    use std::path::Path;
+
+    #[test]
+    fn a_dead_zone_jumps_unless_its_joint_regulates_the_angle() {
+        let text = include_str!("../../../models/bench_arm.toml");
+        let mut model = Model::parse(text, Path::new("bench_arm.toml")).unwrap();
+        let jumps = |name: &str, model: &Model| Candidate::named(name, model).unwrap().jumps(model);
+        assert!(jumps("dead_zone@1", &model) && jumps("gear_backlash@1", &model));
+        assert!(!jumps("delay@1", &model));
+        model.joints[0].drive = Drive::Position {
+            gain_per_rad: 5.0,
+            motor: Motor {
+                stall_torque_nm: 1.5,
+                no_load_speed_rad_s: 6.0,
+                nominal_supply_v: None,
+            },
+        };
+        assert!(!jumps("dead_zone@1", &model) && jumps("gear_backlash@1", &model));
+        assert!(!jumps("dead_zone", &model));
+    }
+}

@@ -206,8 +206,8 @@ impl<R: Rows> Stepper<R> {
         self.slope_is_known = false;
     }
 
-    /// Goes back to the event in a step of `span_s` s, and on with what it makes of the contact; how
-    /// much of the step is left, s.
+    /// Goes back to the event in a step of `span_s` s, and on with what it makes of the contact;
+    /// how much of the step is left, s.
     fn go_to(&mut self, plant: &Plant, inputs: &[DriveInput], event: Event, span_s: f64) -> f64 {
         self.step_again(plant, inputs, event.crossing.share * span_s);
         let crossing = (event.crossing).bent(self.crossed(plant, inputs, event));

@@ -22,8 +22,8 @@ pub(super) struct Taken {
 }
 
 impl<R: Rows> Stepper<R> {
-    /// Advances by `h` s under constant inputs, or until flanks meet or part, which they have yet to
-    /// [do](Self::meet_or_part).
+    /// Advances by `h` s under constant inputs, or until flanks meet or part, which they have yet
+    /// to [do](Self::meet_or_part).
     #[inline]
     pub(super) fn step_to_knock(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) -> Taken {
         if plant.has_flanks {
