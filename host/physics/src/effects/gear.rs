@@ -16,14 +16,11 @@ pub struct Gear {
 
 /// Highest natural frequency of the motor against a standing joint, rad/s. Stiffer gears are
 /// simulated as this stiff: logs at 100 Hz hold nothing of a faster ringing, and it would cost
-/// steps.
+/// steps. Flanks as stiff as that do not give at all.
 pub(super) const HIGHEST_RAD_S: f64 = 400.0;
-/// The same of a gear with a gap, beside a joint of any inertia. Its flanks do not ring, so that
-/// steps may be longer, and must not give: softer ones show in readings of 12 bit.
-const HIGHEST_OF_FLANKS_RAD_S: f64 = 1000.0;
 
 impl Gear {
-    /// Rigid, and without inertia of the motor; flanks that meet hardly rebound.
+    /// Rigid, and without inertia of the motor.
     pub const RIGID: Gear = Gear {
         inertia_kg_m2: 0.0,
         stiffness_nm_rad: f64::INFINITY,
@@ -49,8 +46,9 @@ pub struct Coupling {
     pub inertia_kg_m2: f64,
     /// Natural frequency of the motor against a standing joint, rad/s.
     pub natural_rad_s: f64,
-    /// Whether it is as stiff as any is simulated: how it rings, the logs do not show.
-    pub is_stiff: bool,
+    /// Whether it has a gap between flanks that do not give: motor and joint that meet move on
+    /// together.
+    pub has_rigid_flanks: bool,
     stiffness_nm_rad: f64,
     damping_nm_s_rad: f64,
     half_gap_rad: f64,
@@ -61,19 +59,20 @@ impl Coupling {
     pub fn of(gear: &Gear) -> Option<Coupling> {
         let inertia_kg_m2 = gear.inertia_kg_m2;
         let natural_rad_s = (gear.stiffness_nm_rad / inertia_kg_m2).sqrt();
-        let highest_rad_s = if gear.gap_rad > 0.0 {
-            HIGHEST_OF_FLANKS_RAD_S
+        let has_rigid_flanks = gear.gap_rad > 0.0 && natural_rad_s >= HIGHEST_RAD_S;
+        let natural_rad_s = natural_rad_s.min(HIGHEST_RAD_S);
+        let (stiffness_nm_rad, damping_nm_s_rad) = if has_rigid_flanks {
+            (f64::INFINITY, 0.0)
         } else {
-            HIGHEST_RAD_S
+            let damping = 2.0 * gear.damping_ratio * inertia_kg_m2 * natural_rad_s;
+            (inertia_kg_m2 * natural_rad_s.powi(2), damping)
         };
-        let is_stiff = natural_rad_s >= highest_rad_s;
-        let natural_rad_s = natural_rad_s.min(highest_rad_s);
         (inertia_kg_m2 > 0.0).then_some(Coupling {
             inertia_kg_m2,
             natural_rad_s,
-            is_stiff,
-            stiffness_nm_rad: inertia_kg_m2 * natural_rad_s.powi(2),
-            damping_nm_s_rad: 2.0 * gear.damping_ratio * inertia_kg_m2 * natural_rad_s,
+            has_rigid_flanks,
+            stiffness_nm_rad,
+            damping_nm_s_rad,
             half_gap_rad: 0.5 * gear.gap_rad,
         })
     }
@@ -118,18 +117,9 @@ impl Coupling {
         }
     }
 
-    /// The same beside a joint of this inertia, kg m^2, where nothing says how stiff the flanks
-    /// are: they swing at their highest frequency however light that joint is beside the motor.
-    pub fn beside(&self, inertia_kg_m2: f64) -> Coupling {
-        if !(self.is_stiff && self.has_gap()) {
-            return *self;
-        }
-        let share = inertia_kg_m2 / (inertia_kg_m2 + self.inertia_kg_m2);
-        Coupling {
-            stiffness_nm_rad: share * self.stiffness_nm_rad,
-            damping_nm_s_rad: share * self.damping_nm_s_rad,
-            ..*self
-        }
+    /// How far ahead of its joint the motor is at most, where its flanks are rigid, rad.
+    pub fn half_gap_rad(&self) -> f64 {
+        self.half_gap_rad
     }
 
     /// Whether it has a gap, whose flanks meet and part.
@@ -199,25 +189,23 @@ mod tests {
     }
 
     #[test]
-    fn stiff_flanks_swing_as_fast_beside_any_joint() {
-        let (motor, gap_rad) = (2e-3, 0.1);
+    fn flanks_of_which_nothing_says_how_stiff_they_are_do_not_give() {
         let gear = Gear {
-            inertia_kg_m2: motor,
-            gap_rad,
+            inertia_kg_m2: 2e-3,
+            gap_rad: 0.1,
             ..Gear::RIGID
         };
-        for joint in [1e-4, 2e-3, f64::MAX] {
-            let play = Coupling::of(&gear).unwrap().beside(joint);
-            let stiffness_nm_rad = play.torque_nm(0.06, 0.0) / 0.01;
-            let swing_rad_s = (stiffness_nm_rad * (1.0 / motor + 1.0 / joint)).sqrt();
-            assert!(
-                (swing_rad_s - 1000.0).abs() < 1e-6,
-                "{joint}: {swing_rad_s}"
-            );
-        }
-        // A stiffness that is given stays.
-        let given = Coupling::of(&Gear { gap_rad, ..SPRING }).unwrap();
-        assert_eq!(given.beside(1e-4), given);
+        let play = Coupling::of(&gear).unwrap();
+        assert!(play.has_rigid_flanks);
+        assert_eq!(play.torque_nm(0.05, 9.0), 0.0);
+        assert_eq!(play.torque_nm(-0.051, 0.0), f64::NEG_INFINITY);
+        assert_eq!(play.reach_rad(0.3), (0.05, 0.05));
+        near(play.wound_rad(0.03, 0.01), 0.75 * 0.05);
+        let given = Gear {
+            gap_rad: 0.1,
+            ..SPRING
+        };
+        assert!(!Coupling::of(&given).unwrap().has_rigid_flanks);
     }
 
     #[test]

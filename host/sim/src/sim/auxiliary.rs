@@ -9,6 +9,17 @@ use crate::effects::{BodyState, Coupling, Flank};
 /// Share of a motor's torque below which friction may leave it anywhere between the flanks.
 const LIGHT_SHARE: f64 = 0.01;
 
+/// Share of its gap within which a motor is at a flank, and speed, rad/s, below which it stays
+/// there: what rounding leaves of motors that move with their joints.
+const AT_FLANK: f64 = 1e-9;
+const AT_REST_RAD_S: f64 = 1e-9;
+
+/// Whether a motor that is so far ahead of its joint, and so fast, moves along with it.
+fn is_at_rest_on_flank(coupling: &Coupling, wound_rad: f64, winding_rad_s: f64) -> bool {
+    let least_rad = (1.0 - AT_FLANK) * coupling.half_gap_rad();
+    wound_rad.abs() >= least_rad && winding_rad_s.abs() < AT_REST_RAD_S
+}
+
 /// State of the motors, one a joint, idle where it is rigid, and of a base that gives way, sideways
 /// and upward; empty where all are rigid.
 #[derive(Debug, Clone, Default)]
@@ -21,8 +32,6 @@ pub(super) struct Auxiliary {
     pub slope: Vec<f64>,
     /// Which flank of each motor's gear pushes.
     pub flank: Vec<Flank>,
-    /// The gear of each motor as it is beside its joint at present; `None` where it is rigid.
-    pub coupling: Vec<Option<Coupling>>,
 }
 
 impl Auxiliary {
@@ -34,7 +43,6 @@ impl Auxiliary {
             speed: vec![0.0; bodies],
             slope: vec![0.0; bodies],
             flank: vec![Flank::None; bodies],
-            coupling: plant.joints.iter().map(|plan| plan.coupling).collect(),
         }
     }
 
@@ -50,12 +58,19 @@ impl Auxiliary {
         [self.place[joint] - angle, self.speed[joint] - speed]
     }
 
-    /// Says which flanks push where the joints are at these angles and speeds.
-    pub fn find_flanks(&mut self, (angle, speed): (&[f64], &[f64])) {
-        for joint in 0..self.coupling.len() {
-            if let Some(coupling) = self.coupling[joint] {
+    /// Says which flanks push where the joints are at these angles and speeds; rigid ones that
+    /// meet only now do not yet.
+    pub fn find_flanks(&mut self, plant: &Plant, (angle, speed): (&[f64], &[f64])) {
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            if let Some(coupling) = plan.coupling {
                 let [wound, winding] = self.wound(joint, [angle[joint], speed[joint]]);
-                self.flank[joint] = coupling.flank(wound, winding);
+                self.flank[joint] = if !coupling.has_rigid_flanks {
+                    coupling.flank(wound, winding)
+                } else if is_at_rest_on_flank(&coupling, wound, winding) {
+                    Flank::Of(wound.signum())
+                } else {
+                    Flank::None
+                };
             }
         }
     }
@@ -83,7 +98,7 @@ impl Auxiliary {
         holding_nm: impl Fn(usize) -> f64,
     ) {
         for (joint, plan) in plant.joints.iter().enumerate() {
-            let (Some(coupling), Some(cell)) = (self.coupling[joint], plan.gear_cell) else {
+            let (Some(coupling), Some(cell)) = (plan.coupling, plan.gear_cell) else {
                 continue;
             };
             let mut wound = BodyState::from(memory.0[cell]);
@@ -93,6 +108,10 @@ impl Auxiliary {
                     place: coupling.wound_rad(holding_nm(joint), light_nm),
                     speed: 0.0,
                 };
+            }
+            if coupling.has_rigid_flanks {
+                let most = coupling.half_gap_rad();
+                wound.place = wound.place.clamp(-most, most);
             }
             self.place[joint] = angle[joint] + wound.place;
             self.speed[joint] = speed[joint] + wound.speed;

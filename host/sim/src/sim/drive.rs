@@ -5,6 +5,11 @@ use super::joint_plan::{ActiveEffect, JointPlan};
 use crate::effects::{AtRest, DriveState, MemoryCell, Signals};
 use crate::model::Drive;
 
+/// Longest step of a motor by itself, in parts of the time in which its drive brakes it, and the
+/// shortest that it ever needs, s: a motor without inertia is nowhere by itself for long.
+const MOTOR_STEP: f64 = 0.7;
+const SHORTEST_MOTOR_STEP_S: f64 = 2e-4;
+
 /// Input of a drive at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DriveInput {
@@ -72,17 +77,44 @@ impl JointPlan {
             Drive::Duty(motor) => motor.no_load_speed_rad_s.is_finite(),
             Drive::Position { .. } | Drive::Speed { .. } => true,
         };
-        let standstill = AtRest {
-            angle_rad: 0.0,
-            duty: 0.0,
-            torque_nm: 0.0,
-            full_torque_nm: self.full_torque_nm,
-        };
+        let standstill = self.standstill();
         let follows_speed = |e: &ActiveEffect| {
             let slope = e.effect.slope(e.values(), &standstill);
             slope.is_none_or(|slope| slope.per_rad_s != 0.0)
         };
         !regulated && !self.output.iter().any(follows_speed)
+    }
+
+    /// Longest step that follows a motor between rigid flanks, s: a part of the time in which its
+    /// drive brakes it; infinite where the flanks of its gear are not rigid, or no torque falls
+    /// with speed.
+    pub(super) fn motor_step_s(&self) -> f64 {
+        let rigid = self.coupling.filter(|coupling| coupling.has_rigid_flanks);
+        let Some(coupling) = rigid else {
+            return f64::INFINITY;
+        };
+        let motor = self.drive.motor();
+        let own = motor.map_or(0.0, |motor| 1.0 / motor.no_load_speed_rad_s);
+        let regulated = match self.drive {
+            Drive::Speed { gain_s_per_rad, .. } => gain_s_per_rad,
+            _ => 0.0,
+        };
+        let standstill = self.standstill();
+        let of_effects = self.output.iter().map(|e| {
+            let slope = e.effect.slope(e.values(), &standstill);
+            slope.map_or(0.0, |slope| -slope.per_rad_s)
+        });
+        let brakes = self.full_torque_nm * (own + regulated) + of_effects.sum::<f64>();
+        (MOTOR_STEP * coupling.inertia_kg_m2 / brakes.max(0.0)).max(SHORTEST_MOTOR_STEP_S)
+    }
+
+    fn standstill(&self) -> AtRest {
+        AtRest {
+            angle_rad: 0.0,
+            duty: 0.0,
+            torque_nm: 0.0,
+            full_torque_nm: self.full_torque_nm,
+        }
     }
 
     /// Torque of the drive, N m, at a reading of the joint's own encoder and a speed.

@@ -1,5 +1,6 @@
 //! Accelerations of a plant at a state: drives, joint torques and friction on the chain.
 
+mod joined;
 mod kicks;
 
 use super::auxiliary::Auxiliary;
@@ -8,9 +9,10 @@ use super::memory::EffectMemory;
 use super::plant::Plant;
 use super::rows::Rows;
 use super::stepper::Contact;
-use crate::dynamics::{FreeBase, SpatialWorkspace, Workspace};
-use crate::effects::{BaseSpring, BodyState, FrictionState, JointState, MemoryCell};
+use crate::dynamics::{Chain, FreeBase, SpatialWorkspace, Workspace};
+use crate::effects::{BaseSpring, BodyState, Flank, FrictionState, JointState, MemoryCell};
 use crate::model::Drive;
+use joined::Joined;
 
 /// A state: relative angles, rad, and speeds, rad/s, and how friction acts on each joint.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +42,8 @@ pub(super) struct Forces<R: Rows> {
     pub memory: EffectMemory,
     /// Motors behind gears that give, and a base that gives way.
     pub auxiliary: Auxiliary,
+    /// The bodies with the motors that move with their joints, where any may.
+    joined: Option<Box<Joined>>,
 }
 
 impl<R: Rows> Forces<R> {
@@ -50,7 +54,7 @@ impl<R: Rows> Forces<R> {
         Forces {
             work: Workspace::new(n),
             spatial: SpatialWorkspace::default(),
-            closed: R::closed(plant),
+            closed: R::closed(plant, &plant.rig.chain),
             held: R::filled(false, n),
             torque: zeros(),
             drive_torque: zeros(),
@@ -61,6 +65,7 @@ impl<R: Rows> Forces<R> {
             kicks: zeros(),
             memory: EffectMemory::default(),
             auxiliary: Auxiliary::new(plant),
+            joined: Joined::new(plant),
         }
     }
 
@@ -86,6 +91,7 @@ impl<R: Rows> Forces<R> {
     ) {
         self.find_torques(plant, inputs, at, out);
         self.solve(plant, at, out);
+        self.carry_motors(at.contact, out);
     }
 
     /// One step of `h` s from these angles and speeds, in place, where the torques stay as they
@@ -147,10 +153,15 @@ impl<R: Rows> Forces<R> {
                 }
                 _ => plan.drive_torque_nm(input, 0.0.into(), motor_speed, &self.memory.0),
             };
-            if let Some(coupling) = self.auxiliary.coupling[joint] {
+            if let Some(coupling) = plan.coupling {
                 let auxiliary = &self.auxiliary;
-                let [wound, winding] = auxiliary.wound(joint, [at.angle[joint], speed]);
-                let passed_on = coupling.torque_on_nm(auxiliary.flank[joint], wound, winding);
+                let flank = auxiliary.flank[joint];
+                let passed_on = if coupling.has_rigid_flanks && flank != Flank::None {
+                    drive
+                } else {
+                    let [wound, winding] = auxiliary.wound(joint, [at.angle[joint], speed]);
+                    coupling.torque_on_nm(flank, wound, winding)
+                };
                 self.auxiliary.slope[joint] = (drive - passed_on) / coupling.inertia_kg_m2;
                 drive = passed_on;
             }
@@ -224,11 +235,12 @@ impl<R: Rows> Forces<R> {
             out.copy_from_slice(found.as_ref());
             return;
         }
-        if let Some(tree) = &plant.tree {
+        let joined = self.joined.as_deref();
+        if let Some(tree) = joined.map_or(&plant.tree, |joined| &joined.tree) {
             let joints = [angle, speed, self.torque.as_ref()];
             return tree.forward(&mut self.spatial, joints, self.held.as_ref(), out);
         }
-        plant.rig.chain.forward(
+        chain(joined, plant).forward(
             &mut self.work,
             plant.base_m_s2,
             at.angle,
@@ -246,7 +258,7 @@ impl<R: Rows> Forces<R> {
             mass_kg: base.mass_kg,
             force_n: [0, 1].map(|k| base.force_n(place[k], speed[k])),
         };
-        let acceleration_m_s2 = plant.rig.chain.forward_on(
+        let acceleration_m_s2 = chain(self.joined.as_deref(), plant).forward_on(
             free,
             &mut self.work,
             plant.base_m_s2,
@@ -286,41 +298,8 @@ impl<R: Rows> Forces<R> {
             }
         };
         (self.auxiliary).recall(plant, memory, (angle, speed), holding_nm);
-        self.auxiliary.find_flanks((angle, speed));
-    }
-
-    /// Finds how gears are beside their joints about these angles.
-    pub fn find_couplings(&mut self, plant: &Plant, angle: &[f64]) {
-        if !plant.has_flanks {
-            return;
-        }
-        for joint in 0..angle.len() {
-            if let Some(coupling) = plant.joints[joint].coupling {
-                let inertia_kg_m2 = 1.0 / self.yielding(plant, joint, angle);
-                self.auxiliary.coupling[joint] = Some(coupling.beside(inertia_kg_m2));
-            }
-        }
-    }
-
-    /// How much faster a joint speeds up by a torque of 1 N m more, all joints being free,
-    /// rad/s^2.
-    fn yielding(&mut self, plant: &Plant, joint: usize, angle: &[f64]) -> f64 {
-        let n = angle.len();
-        let (still, contact) = (vec![0.0; n], vec![Contact::Free; n]);
-        let at = StateView {
-            angle,
-            speed: &still,
-            contact: &contact,
-        };
-        self.held.as_mut().fill(false);
-        let [rest, pushed] = [0.0, 1.0].map(|torque_nm| {
-            self.torque.as_mut().fill(0.0);
-            self.torque[joint] = torque_nm;
-            let mut out = vec![0.0; n];
-            self.solve(plant, at, &mut out);
-            out[joint]
-        });
-        pushed - rest
+        self.auxiliary.find_flanks(plant, (angle, speed));
+        self.join_motors(plant);
     }
 
     /// Torques that hold the chain against gravity and velocity coupling at zero acceleration: the
@@ -358,4 +337,9 @@ impl<R: Rows> Forces<R> {
         rig.chain
             .newton_euler(rig.gravity_turn_rad, joints, &mut each);
     }
+}
+
+/// The planar chain as it is at present.
+fn chain<'a>(joined: Option<&'a Joined>, plant: &'a Plant) -> &'a Chain {
+    joined.map_or(&plant.rig.chain, |joined| &joined.chain)
 }

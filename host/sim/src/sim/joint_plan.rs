@@ -54,6 +54,9 @@ pub(super) struct JointPlan {
     pub coupling: Option<Coupling>,
     /// Place of how far the gear is wound up, where there is a coupling.
     pub gear_cell: Option<usize>,
+    /// Longest step that follows the motor while it turns by itself between rigid flanks, s;
+    /// infinite where it does not.
+    pub motor_step_s: f64,
     pub encode: Vec<ActiveEffect>,
     pub sense: Vec<ActiveEffect>,
     /// By how much later than the sensor read it the log holds a reading, s.
@@ -80,6 +83,7 @@ impl JointPlan {
             gear: Gear::RIGID,
             coupling: None,
             gear_cell: None,
+            motor_step_s: f64::INFINITY,
             encode: Vec::new(),
             sense: Vec::new(),
             offset_s: 0.0,

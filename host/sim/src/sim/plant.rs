@@ -48,11 +48,12 @@ pub struct Plant {
     pub(super) hidden: Vec<HiddenUnknown>,
     /// A base that gives way, and the place of the first of its two cells.
     pub(super) base: Option<(BaseSpring, usize)>,
-    /// Longest step that follows motors which turn apart from their joints, and a base that gives
-    /// way, s; infinite without.
+    /// Longest step that follows gears and a base that give way, s; infinite where all are rigid.
     pub(super) auxiliary_step_s: f64,
     /// Whether any gear has a gap, whose flanks meet and part.
     pub(super) has_flanks: bool,
+    /// Whether the flanks of any do not give.
+    pub(super) has_rigid_flanks: bool,
     pub(super) step_s: f64,
     /// Whether every torque stays until an input changes or a joint stops or starts.
     pub(super) torques_stay: bool,
@@ -105,6 +106,7 @@ impl Plant {
         }
         for joint in &mut joints {
             joint.follows_input = joint.coupling.is_none() && joint.torque_is_held();
+            joint.motor_step_s = joint.motor_step_s();
         }
         let of_rates = joints.iter_mut().zip(&rates).filter(|(_, rate)| **rate);
         of_rates.for_each(|(joint, _)| joint.keep_rate_sensors());
@@ -130,8 +132,8 @@ impl Plant {
             remembers: of_joints + if base.is_some() { 2 } else { 0 },
             hidden: HiddenUnknown::all(&joints),
             auxiliary_step_s: auxiliary_step_s(&joints, rig.base_spring),
-            has_flanks: (joints.iter().filter_map(|joint| joint.coupling))
-                .any(|coupling| coupling.has_gap()),
+            has_flanks: any_coupling(&joints, |coupling| coupling.has_gap()),
+            has_rigid_flanks: any_coupling(&joints, |coupling| coupling.has_rigid_flanks),
             base,
             tree: rig.tree.as_ref().map(SpatialEquations::new),
             base_m_s2: rig.chain.base_m_s2(rig.gravity_turn_rad),
@@ -165,7 +167,7 @@ impl Plant {
 
     /// Whether any motor turns apart from its joint, or the base gives way.
     pub(super) fn has_auxiliary(&self) -> bool {
-        self.auxiliary_step_s.is_finite()
+        self.has_rigid_flanks || self.auxiliary_step_s.is_finite()
     }
 
     /// How many bodies move beside the links: a motor a joint, and a base that gives way in two
@@ -210,9 +212,8 @@ fn each<T>(model: &Model, value: impl Fn(usize) -> T) -> Vec<T> {
 }
 
 /// Longest step, in parts of the time in which a motor swings against its joint by 1 rad, that
-/// integrates it well; so for a base. Of stiff flanks only the knocks matter, which steps end at.
+/// integrates it well; so for a base.
 const AUXILIARY_STEP: f64 = 0.4;
-const STIFF_STEP: f64 = 1.2;
 
 /// Longest step over which laws that remember from step to step, a grip that slips for one, go on
 /// well, s.
@@ -227,19 +228,22 @@ fn step_s(of_model_s: f64, remembers: bool) -> f64 {
     }
 }
 
+/// Whether any joint has such a gear.
+fn any_coupling(joints: &[JointPlan], is: impl Fn(&Coupling) -> bool) -> bool {
+    joints
+        .iter()
+        .any(|joint| joint.coupling.as_ref().is_some_and(&is))
+}
+
 /// See [`Plant::auxiliary_step_s`].
 fn auxiliary_step_s(joints: &[JointPlan], base: Option<BaseSpring>) -> f64 {
-    let of_motor = |coupling: Coupling| {
-        let share = if coupling.is_stiff && coupling.has_gap() {
-            STIFF_STEP
-        } else {
-            AUXILIARY_STEP
-        };
-        share / coupling.natural_rad_s
-    };
     let motors = joints.iter().filter_map(|joint| joint.coupling);
-    let base = base.map(|base| AUXILIARY_STEP / base.natural_rad_s());
-    let steps = motors.map(of_motor).chain(base);
+    let giving = motors.filter(|coupling| !coupling.has_rigid_flanks);
+    let natural_rad_s = giving.map(|coupling| coupling.natural_rad_s);
+    let base = base.map(|base| base.natural_rad_s());
+    let steps = natural_rad_s
+        .chain(base)
+        .map(|natural_rad_s| AUXILIARY_STEP / natural_rad_s);
     steps.fold(f64::INFINITY, f64::min)
 }
 

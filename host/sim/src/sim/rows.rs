@@ -6,7 +6,7 @@
 //! Rests on it in `cargo xtask peers`: "closed-loop run of 5 s, with effects: numba".
 
 use super::plant::Plant;
-use crate::dynamics::Dense;
+use crate::dynamics::{Chain, Dense};
 use std::fmt::Debug;
 use std::ops::IndexMut;
 
@@ -21,8 +21,8 @@ pub(super) trait Rows {
     /// A row of this value for each of `joints`.
     fn filled<T: Copy + Debug>(value: T, joints: usize) -> Self::Of<T>;
 
-    /// The equations of a plant of that many joints.
-    fn closed(plant: &Plant) -> Self::Closed;
+    /// The equations of this chain of a plant, of that many joints.
+    fn closed(plant: &Plant, chain: &Chain) -> Self::Closed;
 
     /// What [`Chain::forward`](crate::dynamics::Chain::forward) gives; none where it is to do it.
     fn forward(
@@ -58,12 +58,12 @@ impl<const N: usize> Rows for FixedRows<N> {
         [value; N]
     }
 
-    fn closed(plant: &Plant) -> Option<Dense<N>> {
+    fn closed(plant: &Plant, chain: &Chain) -> Option<Dense<N>> {
         // One link has a formula of its own, and a tree in space none.
         match N {
             1 => None,
             _ if plant.tree.is_some() => None,
-            _ => Dense::new(&plant.rig.chain, plant.rig.gravity_turn_rad),
+            _ => Dense::new(chain, plant.rig.gravity_turn_rad),
         }
     }
 
@@ -109,7 +109,7 @@ impl Rows for DynamicRows {
         vec![value; joints]
     }
 
-    fn closed(_: &Plant) {}
+    fn closed(_: &Plant, _: &Chain) {}
 
     fn forward((): &(), _: &[f64], _: &[f64], _: &Vec<f64>, _: &Vec<bool>) -> Option<Vec<f64>> {
         None

@@ -14,7 +14,12 @@ use super::rows::Rows;
 use crate::dynamics::RungeKutta;
 use crate::effects::MemoryCell;
 use crossing::Crossing;
-use integration::hold;
+
+/// Chatter between contacts can't go on for ever: after so many events the rest of a step is taken
+/// as it comes.
+const MOST_EVENTS: usize = 8;
+/// No time at all, s.
+const NO_SPAN_S: f64 = 1e-12;
 
 /// Into how many steps of what length, s, a span is cut by the longest step.
 #[inline]
@@ -72,8 +77,8 @@ pub(super) struct Stepper<R: Rows> {
     start_angle: R::Of<f64>,
     start_speed: R::Of<f64>,
     start_auxiliary: Auxiliary,
-    /// By how much each gear's flanks were pressed where the step began, rad.
-    start_pressed_rad: R::Of<f64>,
+    /// By how much each gear's flanks were pressed where the step began.
+    start_pressed: R::Of<f64>,
     /// Accelerations, and for held joints the torque that holds them.
     slope: R::Of<f64>,
     /// Whether those, and the excess, are of the present state, contacts and inputs.
@@ -103,7 +108,7 @@ impl<R: Rows> Stepper<R> {
             start_angle: zeros(),
             start_speed: zeros(),
             start_auxiliary: Auxiliary::new(plant),
-            start_pressed_rad: zeros(),
+            start_pressed: zeros(),
             slope: zeros(),
             slope_is_known: false,
             excess: zeros(),
@@ -112,7 +117,6 @@ impl<R: Rows> Stepper<R> {
         };
         stepper.forces.memory = EffectMemory::beginning(plant, angle, speed);
         stepper.forces.find_kicks(plant, angle);
-        stepper.forces.find_couplings(plant, angle);
         for (joint, plan) in plant.joints.iter().enumerate() {
             stepper.angle[joint] = angle[joint];
             stepper.speed[joint] = speed[joint];
@@ -177,9 +181,9 @@ impl<R: Rows> Stepper<R> {
     fn advance_bodies(&mut self, plant: &Plant, inputs: &[DriveInput], step_s: f64) {
         let mut left = step_s;
         self.follow(plant, inputs);
-        // Chatter between contacts can't go on for ever: after this many events the step is taken
-        // as it comes.
-        for _ in 0..8 {
+        let mut events = 0;
+        while events < MOST_EVENTS {
+            self.part_pulled(plant, inputs);
             self.release(plant, inputs);
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
@@ -188,19 +192,25 @@ impl<R: Rows> Stepper<R> {
             left -= taken.span_s;
             if let Some(event) = self.first_event(plant, inputs) {
                 left += self.go_to(plant, inputs, event, taken.span_s);
+                events += 1;
             } else if let Some(joint) = taken.knock {
-                self.meet_or_part(joint);
+                self.meet_or_part(plant, joint);
+                events += 1;
             }
-            if left <= 1e-12 {
+            if left <= NO_SPAN_S {
                 return;
             }
         }
+        self.part_pulled(plant, inputs);
         self.release(plant, inputs);
-        self.step(plant, inputs, left);
+        while left > NO_SPAN_S {
+            let h = left.min(self.motors_step_s(plant));
+            self.step(plant, inputs, h);
+            left -= h;
+        }
         for joint in 0..self.len() {
             if self.stopped(joint) {
-                self.speed[joint] = 0.0;
-                self.contact[joint] = Contact::Held;
+                self.stop(plant, joint);
             }
         }
         self.slope_is_known = false;
@@ -213,7 +223,7 @@ impl<R: Rows> Stepper<R> {
         let crossing = (event.crossing).bent(self.crossed(plant, inputs, event));
         self.step_again(plant, inputs, crossing.share * span_s);
         if event.contact == Contact::Held {
-            self.speed[event.joint] = 0.0;
+            self.stop(plant, event.joint);
         }
         self.contact[event.joint] = event.contact;
         span_s * (1.0 - crossing.share)

@@ -173,6 +173,11 @@ impl SpatialEquations {
         self.links.is_empty()
     }
 
+    /// Inertia of a joint's rotor, kg m^2; of a slide in kg.
+    pub fn armature_mut(&mut self, joint: usize) -> &mut f64 {
+        &mut self.links[joint].armature
+    }
+
     /// Acceleration of what carries a link.
     #[inline(always)]
     fn before(&self, work: &SpatialWorkspace, link: &Link) -> Spatial {

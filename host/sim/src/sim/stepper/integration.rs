@@ -44,6 +44,36 @@ impl<R: Rows> Stepper<R> {
             },
         );
     }
+
+    /// Advances joints, motors behind gears that give, and a base that gives way by `h` s.
+    fn step_with_auxiliary(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
+        let (forces, contact) = (&mut self.forces, self.contact.as_ref());
+        let joints = contact.len();
+        let [place, speed] = &mut self.together;
+        place[..joints].copy_from_slice(self.angle.as_ref());
+        place[joints..].copy_from_slice(&forces.auxiliary.place);
+        speed[..joints].copy_from_slice(self.speed.as_ref());
+        speed[joints..].copy_from_slice(&forces.auxiliary.speed);
+        (self.with_auxiliary).step(place, speed, h, None, |place, speed, slope| {
+            let (angle, own_place) = place.split_at(joints);
+            let (speed, own_speed) = speed.split_at(joints);
+            let (slope, own_slope) = slope.split_at_mut(joints);
+            forces.auxiliary.place.copy_from_slice(own_place);
+            forces.auxiliary.speed.copy_from_slice(own_speed);
+            let at = StateView {
+                angle,
+                speed,
+                contact,
+            };
+            forces.accelerate(plant, inputs, at, slope);
+            hold(slope, contact);
+            own_slope.copy_from_slice(&forces.auxiliary.slope);
+        });
+        self.angle.as_mut().copy_from_slice(&place[..joints]);
+        self.speed.as_mut().copy_from_slice(&speed[..joints]);
+        forces.auxiliary.place.copy_from_slice(&place[joints..]);
+        forces.auxiliary.speed.copy_from_slice(&speed[joints..]);
+    }
 }
 
 /// Joints that friction holds do not speed up.

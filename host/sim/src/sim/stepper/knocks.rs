@@ -1,11 +1,11 @@
-//! Steps of joints and the bodies beside the links together, which end where flanks meet or part.
+//! Flanks of gears that meet and part, which ends a step.
 //!
-//! Flanks that push are a spring and a damper, flanks apart nothing: a step across the corner
-//! between them, or one that looks for the first push of a held joint across it, misses it by a
-//! part of the step, and a knock decides all that follows.
+//! Flanks that give are a spring and a damper while they push, flanks apart nothing. Rigid ones
+//! that meet do not rebound: motor and joint move on together until the flank would have to pull. A
+//! step across either misses it by a part of the step, and a knock decides all that follows.
 
 use super::crossing::Crossing;
-use super::{Stepper, hold};
+use super::{Contact, Stepper};
 use crate::effects::{Coupling, Flank};
 use crate::sim::drive::DriveInput;
 use crate::sim::forces::StateView;
@@ -22,8 +22,8 @@ pub(super) struct Taken {
 }
 
 impl<R: Rows> Stepper<R> {
-    /// Advances by `h` s under constant inputs, or until flanks meet or part, which they have yet
-    /// to [do](Self::meet_or_part).
+    /// Advances by `h` s under constant inputs, less where a motor by itself needs shorter steps,
+    /// or until flanks meet or part, which they have yet to [do](Self::meet_or_part).
     #[inline]
     pub(super) fn step_to_knock(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) -> Taken {
         if plant.has_flanks {
@@ -37,37 +37,83 @@ impl<R: Rows> Stepper<R> {
     }
 
     fn step_to_first_knock(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) -> Taken {
-        for joint in 0..self.len() {
-            self.start_pressed_rad[joint] = self.pressed_rad(joint);
-        }
+        let h = h.min(self.motors_step_s(plant));
+        self.start_pressed = self.pressed(plant, inputs);
         self.step(plant, inputs, h);
-        let Some((joint, crossing)) = self.first_knock() else {
+        let pressed = self.pressed(plant, inputs);
+        let Some((joint, crossing)) = self.first_knock(&pressed) else {
             let (span_s, knock) = (h, None);
             return Taken { span_s, knock };
         };
         self.step_again(plant, inputs, crossing.share * h);
-        let crossing = crossing.bent(self.pressed_rad(joint));
+        let crossing = crossing.bent(self.pressed(plant, inputs)[joint]);
         let span_s = crossing.share * h;
         self.step_again(plant, inputs, span_s);
         let knock = Some(joint);
         Taken { span_s, knock }
     }
 
-    /// By how much a gear's flanks are pressed, rad; far apart without a gap.
-    fn pressed_rad(&self, joint: usize) -> f64 {
-        let auxiliary = &self.forces.auxiliary;
-        let [wound, winding] = auxiliary.wound(joint, [self.angle[joint], self.speed[joint]]);
-        let gapped = auxiliary.coupling[joint].filter(Coupling::has_gap);
-        gapped.map_or(f64::NEG_INFINITY, |coupling| {
-            coupling.pressed_rad(auxiliary.flank[joint], wound, winding)
-        })
+    /// Longest step, s, that follows motors which are between their flanks.
+    pub(super) fn motors_step_s(&self, plant: &Plant) -> f64 {
+        let flanks = plant.joints.iter().zip(&self.forces.auxiliary.flank);
+        let between = flanks.filter(|(_, flank)| **flank == Flank::None);
+        let steps = between.map(|(plan, _)| plan.motor_step_s);
+        steps.fold(f64::INFINITY, f64::min)
+    }
+
+    /// By how much each gear's flanks are pressed, rad, or by which torque, N m, where rigid ones
+    /// push; below 0 where they are apart, or would pull; far apart without a gap.
+    fn pressed(&mut self, plant: &Plant, inputs: &[DriveInput]) -> R::Of<f64> {
+        if self.is_joined(plant) {
+            self.find_slope(plant, inputs);
+        }
+        let mut pressed = R::filled(f64::NEG_INFINITY, self.len());
+        for (joint, plan) in plant.joints.iter().enumerate() {
+            if let Some(coupling) = plan.coupling.as_ref().filter(|gear| gear.has_gap()) {
+                pressed[joint] = self.pressed_at(coupling, joint);
+            }
+        }
+        pressed
+    }
+
+    fn pressed_at(&self, coupling: &Coupling, joint: usize) -> f64 {
+        let flank = self.forces.auxiliary.flank[joint];
+        if let (Flank::Of(direction), true) = (flank, coupling.has_rigid_flanks) {
+            return self.forces.pushed_nm(coupling, joint, direction);
+        }
+        let [wound, winding] = self.wound(joint);
+        coupling.pressed_rad(flank, wound, winding)
+    }
+
+    /// How far and how fast a motor is ahead of its joint, rad and rad/s.
+    fn wound(&self, joint: usize) -> [f64; 2] {
+        let at = [self.angle[joint], self.speed[joint]];
+        self.forces.auxiliary.wound(joint, at)
+    }
+
+    /// Whether a rigid flank pushes any joint.
+    fn is_joined(&self, plant: &Plant) -> bool {
+        let pushes = |flank: &Flank| *flank != Flank::None;
+        plant.has_rigid_flanks && self.forces.auxiliary.flank.iter().any(pushes)
+    }
+
+    /// Finds the accelerations at the present state.
+    fn find_slope(&mut self, plant: &Plant, inputs: &[DriveInput]) {
+        let at = StateView {
+            angle: self.angle.as_ref(),
+            speed: self.speed.as_ref(),
+            contact: self.contact.as_ref(),
+        };
+        self.forces
+            .accelerate(plant, inputs, at, self.slope.as_mut());
+        self.slope_is_known = false;
     }
 
     /// The joint whose flanks first meet or part in the step just taken.
-    fn first_knock(&self) -> Option<(usize, Crossing)> {
+    fn first_knock(&self, pressed: &R::Of<f64>) -> Option<(usize, Crossing)> {
         let crossings = (0..self.len()).filter_map(|joint| {
             let pushes = self.forces.auxiliary.flank[joint] != Flank::None;
-            let ends = [self.start_pressed_rad[joint], self.pressed_rad(joint)];
+            let ends = [self.start_pressed[joint], pressed[joint]];
             // What met or parted at the step's beginning lies on either side of it by a rounding.
             let crosses = (ends[1] > 0.0) != pushes;
             crosses.then(|| (joint, Crossing::between(ends)))
@@ -75,43 +121,85 @@ impl<R: Rows> Stepper<R> {
         crossings.min_by(|(_, a), (_, b)| a.share.total_cmp(&b.share))
     }
 
-    /// Goes on with the other of a flank that pushes and none.
-    pub(super) fn meet_or_part(&mut self, joint: usize) {
-        let auxiliary = &mut self.forces.auxiliary;
-        let [wound, _] = auxiliary.wound(joint, [self.angle[joint], self.speed[joint]]);
-        auxiliary.flank[joint] = match auxiliary.flank[joint] {
-            Flank::None => Flank::Of(wound.signum()),
-            Flank::Of(_) => Flank::None,
-        };
+    /// Lets go of motors whose rigid flanks would have to pull, the one that pulls most first.
+    pub(super) fn part_pulled(&mut self, plant: &Plant, inputs: &[DriveInput]) {
+        while self.is_joined(plant) {
+            let pressed = self.pressed(plant, inputs);
+            let pushing = (0..self.len()).filter(|&joint| {
+                let flank = self.forces.auxiliary.flank[joint];
+                flank != Flank::None && pressed[joint] < 0.0
+            });
+            let pulled = pushing.min_by(|&a, &b| pressed[a].total_cmp(&pressed[b]));
+            let Some(joint) = pulled else { return };
+            self.set_flank(plant, joint, Flank::None);
+        }
     }
 
-    /// Advances joints, motors behind gears that give, and a base that gives way by `h` s.
-    pub(super) fn step_with_auxiliary(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
-        let (forces, contact) = (&mut self.forces, self.contact.as_ref());
-        let joints = contact.len();
-        let [place, speed] = &mut self.together;
-        place[..joints].copy_from_slice(self.angle.as_ref());
-        place[joints..].copy_from_slice(&forces.auxiliary.place);
-        speed[..joints].copy_from_slice(self.speed.as_ref());
-        speed[joints..].copy_from_slice(&forces.auxiliary.speed);
-        (self.with_auxiliary).step(place, speed, h, None, |place, speed, slope| {
-            let (angle, own_place) = place.split_at(joints);
-            let (speed, own_speed) = speed.split_at(joints);
-            let (slope, own_slope) = slope.split_at_mut(joints);
-            forces.auxiliary.place.copy_from_slice(own_place);
-            forces.auxiliary.speed.copy_from_slice(own_speed);
-            let at = StateView {
-                angle,
-                speed,
-                contact,
+    fn set_flank(&mut self, plant: &Plant, joint: usize, flank: Flank) {
+        self.forces.auxiliary.flank[joint] = flank;
+        self.forces.join_motors(plant);
+        self.slope_is_known = false;
+    }
+
+    /// Goes on with the other of a flank that pushes and none.
+    pub(super) fn meet_or_part(&mut self, plant: &Plant, joint: usize) {
+        let flank = match self.forces.auxiliary.flank[joint] {
+            Flank::None => Flank::Of(self.wound(joint)[0].signum()),
+            Flank::Of(_) => Flank::None,
+        };
+        let rigid = plant.joints[joint].coupling;
+        let rigid = rigid.filter(|coupling| coupling.has_rigid_flanks);
+        if let (Some(coupling), Flank::Of(direction)) = (rigid, flank) {
+            let angle = self.angle[joint];
+            self.forces.auxiliary.place[joint] = angle + direction * coupling.half_gap_rad();
+            self.knock(plant, joint, coupling.inertia_kg_m2);
+        }
+        self.set_flank(plant, joint, flank);
+    }
+
+    /// Gives motor and joint, which meet, one speed: momentum passes from one to the other.
+    fn knock(&mut self, plant: &Plant, joint: usize, motor_kg_m2: f64) {
+        let (angle, contact) = (self.angle.as_ref(), self.contact.as_ref());
+        let response = self.forces.response(plant, joint, angle, contact);
+        let [_, winding_rad_s] = self.wound(joint);
+        let push_nm_s = winding_rad_s / (response[joint] + 1.0 / motor_kg_m2);
+        let joints = self.len();
+        for (k, by) in response.iter().enumerate() {
+            let by = by * push_nm_s;
+            if k >= joints {
+                self.forces.auxiliary.speed[k] += by;
+                continue;
+            }
+            self.speed[k] += by;
+            let moves_along = k == joint || self.forces.auxiliary.flank[k] != Flank::None;
+            if moves_along
+                && plant.joints[k]
+                    .coupling
+                    .is_some_and(|gear| gear.has_rigid_flanks)
+            {
+                self.forces.auxiliary.speed[k] = self.speed[k];
+            }
+            self.contact[k] = match self.contact[k] {
+                Contact::Held if k == joint && by != 0.0 => Contact::Sliding(by.signum()),
+                Contact::Sliding(direction) if direction * self.speed[k] < 0.0 => {
+                    Contact::Sliding(-direction)
+                }
+                contact => contact,
             };
-            forces.accelerate(plant, inputs, at, slope);
-            hold(slope, contact);
-            own_slope.copy_from_slice(&forces.auxiliary.slope);
-        });
-        self.angle.as_mut().copy_from_slice(&place[..joints]);
-        self.speed.as_mut().copy_from_slice(&speed[..joints]);
-        forces.auxiliary.place.copy_from_slice(&place[joints..]);
-        forces.auxiliary.speed.copy_from_slice(&speed[joints..]);
+        }
+    }
+
+    /// Holds a joint where it is, and a motor that moves with it.
+    pub(super) fn stop(&mut self, plant: &Plant, joint: usize) {
+        self.speed[joint] = 0.0;
+        self.contact[joint] = Contact::Held;
+        let pushes = plant.has_rigid_flanks && self.forces.auxiliary.flank[joint] != Flank::None;
+        if pushes
+            && plant.joints[joint]
+                .coupling
+                .is_some_and(|gear| gear.has_rigid_flanks)
+        {
+            self.forces.auxiliary.speed[joint] = 0.0;
+        }
     }
 }

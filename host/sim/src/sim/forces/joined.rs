@@ -1,0 +1,127 @@
+//! Motors whose rigid flanks push: they move as their joints do, to whose inertia they add.
+
+use super::Forces;
+use crate::dynamics::{Chain, SpatialEquations};
+use crate::effects::{Coupling, Flank};
+use crate::sim::plant::Plant;
+use crate::sim::rows::Rows;
+use crate::sim::stepper::Contact;
+
+/// A plant's bodies with the motors that push their joints.
+#[derive(Debug, Clone)]
+pub(super) struct Joined {
+    pub chain: Chain,
+    pub tree: Option<SpatialEquations>,
+    /// Of each joint, whether its motor moves along.
+    motors: Vec<bool>,
+}
+
+impl Joined {
+    /// Without any motor; none for a plant of which none has rigid flanks.
+    pub fn new(plant: &Plant) -> Option<Box<Joined>> {
+        plant.has_rigid_flanks.then(|| {
+            Box::new(Joined {
+                chain: plant.rig.chain.clone(),
+                tree: plant.tree.clone(),
+                motors: vec![false; plant.len()],
+            })
+        })
+    }
+
+    fn armature_mut(&mut self, joint: usize) -> &mut f64 {
+        match &mut self.tree {
+            Some(tree) => tree.armature_mut(joint),
+            None => &mut self.chain.links[joint].armature_kg_m2,
+        }
+    }
+}
+
+/// The gear of a joint whose motor moves with it whenever a flank pushes.
+fn rigid(plant: &Plant, joint: usize) -> Option<Coupling> {
+    plant.joints[joint]
+        .coupling
+        .filter(|coupling| coupling.has_rigid_flanks)
+}
+
+impl<R: Rows> Forces<R> {
+    /// Lets those motors move with their joints whose rigid flanks push, and no others.
+    pub fn join_motors(&mut self, plant: &Plant) {
+        let Some(joined) = &mut self.joined else {
+            return;
+        };
+        let mut is_new = false;
+        for joint in 0..plant.len() {
+            let pushes = self.auxiliary.flank[joint] != Flank::None;
+            if let Some(coupling) = rigid(plant, joint)
+                && joined.motors[joint] != pushes
+            {
+                let by = if pushes { 1.0 } else { -1.0 };
+                *joined.armature_mut(joint) += by * coupling.inertia_kg_m2;
+                joined.motors[joint] = pushes;
+                is_new = true;
+            }
+        }
+        if is_new {
+            self.closed = R::closed(plant, &joined.chain);
+        }
+    }
+
+    /// Lets motors that move with their joints speed up as these do.
+    pub(super) fn carry_motors(&mut self, at: &[Contact], slope: &[f64]) {
+        let Some(joined) = &self.joined else {
+            return;
+        };
+        for (joint, _) in joined
+            .motors
+            .iter()
+            .enumerate()
+            .filter(|(_, moves)| **moves)
+        {
+            let is_held = at[joint] == Contact::Held;
+            self.auxiliary.slope[joint] = if is_held { 0.0 } else { slope[joint] };
+        }
+    }
+
+    /// What the flank of a motor that moves with its joint pushes with, N m, at the accelerations
+    /// found last; below 0 where it would pull.
+    pub fn pushed_nm(&self, coupling: &Coupling, joint: usize, direction: f64) -> f64 {
+        let speeding_up = coupling.inertia_kg_m2 * self.auxiliary.slope[joint];
+        direction * (self.drive_torque[joint] - speeding_up)
+    }
+
+    /// By how much a push of 1 N m s at a joint changes the speeds of all, rad/s, the base's, m/s,
+    /// behind them; friction holds on to those that it holds, but for that joint.
+    pub fn response(
+        &mut self,
+        plant: &Plant,
+        joint: usize,
+        angle: &[f64],
+        contact: &[Contact],
+    ) -> Vec<f64> {
+        let joints = angle.len();
+        let still = vec![0.0; joints];
+        for (k, contact) in contact.iter().enumerate() {
+            self.held[k] = k != joint && *contact == Contact::Held;
+        }
+        let at = super::StateView {
+            angle,
+            speed: &still,
+            contact,
+        };
+        let [rest, pushed] = [0.0, 1.0].map(|torque_nm| {
+            self.torque.as_mut().fill(0.0);
+            self.torque[joint] = torque_nm;
+            let mut out = vec![0.0; joints];
+            self.solve(plant, at, &mut out);
+            out.extend(self.auxiliary.slope.iter().skip(joints));
+            out
+        });
+        let changes = rest.iter().zip(&pushed).enumerate();
+        changes
+            .map(|(k, (rest, pushed))| {
+                let is_held = k < joints && self.held[k];
+                if is_held { 0.0 } else { pushed - rest }
+            })
+            .collect()
+    }
+}
