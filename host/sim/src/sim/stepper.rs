@@ -182,7 +182,8 @@ impl<R: Rows> Stepper<R> {
         let mut left = step_s;
         self.follow(plant, inputs);
         let mut events = 0;
-        while events < MOST_EVENTS {
+        // Not so where the state is lost: what is left is then no number.
+        while left > NO_SPAN_S && events < MOST_EVENTS {
             self.part_pulled(plant, inputs);
             self.release(plant, inputs);
             self.start_angle.clone_from(&self.angle);
@@ -197,9 +198,9 @@ impl<R: Rows> Stepper<R> {
                 self.meet_or_part(plant, joint);
                 events += 1;
             }
-            if left <= NO_SPAN_S {
-                return;
-            }
+        }
+        if events < MOST_EVENTS || left <= NO_SPAN_S {
+            return;
         }
         self.part_pulled(plant, inputs);
         self.release(plant, inputs);
