@@ -71,9 +71,10 @@ pub(super) struct Stepper<R: Rows> {
     contact: R::Of<Contact>,
     forces: Forces<R>,
     runge_kutta: RungeKutta<R::Of<f64>>,
-    /// The same for joints and the bodies beside the links together, and their places and speeds.
+    /// The same for joints and the bodies beside the links together, and their places, speeds and
+    /// accelerations.
     with_auxiliary: RungeKutta<Vec<f64>>,
-    together: [Vec<f64>; 2],
+    together: [Vec<f64>; 3],
     start_angle: R::Of<f64>,
     start_speed: R::Of<f64>,
     start_auxiliary: Auxiliary,
@@ -85,6 +86,7 @@ pub(super) struct Stepper<R: Rows> {
     slope_is_known: bool,
     /// By how much held joints are pushed beyond their breakaway torque, N m, when last looked at.
     excess: R::Of<f64>,
+    start_excess: R::Of<f64>,
     /// Inputs as the drives follow them, where effects remember.
     obeyed: Vec<DriveInput>,
     /// The inputs last followed.
@@ -104,7 +106,7 @@ impl<R: Rows> Stepper<R> {
             forces: Forces::new(plant),
             runge_kutta: RungeKutta::new(zeros()),
             with_auxiliary: RungeKutta::new(together.clone()),
-            together: [together.clone(), together],
+            together: std::array::from_fn(|_| together.clone()),
             start_angle: zeros(),
             start_speed: zeros(),
             start_auxiliary: Auxiliary::new(plant),
@@ -112,6 +114,7 @@ impl<R: Rows> Stepper<R> {
             slope: zeros(),
             slope_is_known: false,
             excess: zeros(),
+            start_excess: zeros(),
             obeyed: Vec::new(),
             followed: Vec::new(),
         };
@@ -189,6 +192,7 @@ impl<R: Rows> Stepper<R> {
             self.start_angle.clone_from(&self.angle);
             self.start_speed.clone_from(&self.speed);
             self.start_auxiliary.copy_motion(&self.forces.auxiliary);
+            self.start_excess.clone_from(&self.excess);
             let taken = self.step_to_knock(plant, inputs, left);
             left -= taken.span_s;
             if let Some(event) = self.first_event(plant, inputs) {
@@ -307,12 +311,13 @@ impl<R: Rows> Stepper<R> {
         if !moves || !self.contact.as_ref().iter().any(is_held) {
             return None;
         }
-        let before = self.excess.clone();
-        self.find_excess(plant, inputs);
+        if !self.slope_is_known {
+            self.find_excess(plant, inputs);
+        }
         (0..self.len())
             .filter(|&joint| is_held(&self.contact[joint]) && self.excess[joint] > 0.0)
             .map(|joint| {
-                let ends = [before[joint], self.excess[joint]];
+                let ends = [self.start_excess[joint], self.excess[joint]];
                 Event::between(joint, ends, Contact::Sliding(self.push_direction(joint)))
             })
             .min_by(Event::by_share)
@@ -337,8 +342,8 @@ impl<R: Rows> Stepper<R> {
         }
     }
 
-    /// By how much held joints are pushed beyond their breakaway torque at the present state.
-    /// Bodies beside the links have accelerations of their own, which are not kept.
+    /// By how much held joints are pushed beyond their breakaway torque at the present state, and
+    /// all accelerations there.
     fn find_excess(&mut self, plant: &Plant, inputs: &[DriveInput]) {
         let (angle, speed) = (self.angle.as_ref(), self.speed.as_ref());
         let contact = self.contact.as_ref();
@@ -358,7 +363,7 @@ impl<R: Rows> Stepper<R> {
                 self.excess[joint] = push.abs() - breakaway;
             }
         }
-        self.slope_is_known = !plant.has_auxiliary();
+        self.slope_is_known = true;
     }
 
     /// Where a held joint is pushed, +1 or -1.

@@ -47,14 +47,19 @@ impl<R: Rows> Stepper<R> {
 
     /// Advances joints, motors behind gears that give, and a base that gives way by `h` s.
     fn step_with_auxiliary(&mut self, plant: &Plant, inputs: &[DriveInput], h: f64) {
+        let known = std::mem::replace(&mut self.slope_is_known, false);
         let (forces, contact) = (&mut self.forces, self.contact.as_ref());
         let joints = contact.len();
-        let [place, speed] = &mut self.together;
+        let [place, speed, slope] = &mut self.together;
+        slope[..joints].copy_from_slice(self.slope.as_ref());
+        slope[joints..].copy_from_slice(&forces.auxiliary.slope);
+        hold(&mut slope[..joints], contact);
+        let first = known.then_some(&*slope);
         place[..joints].copy_from_slice(self.angle.as_ref());
         place[joints..].copy_from_slice(&forces.auxiliary.place);
         speed[..joints].copy_from_slice(self.speed.as_ref());
         speed[joints..].copy_from_slice(&forces.auxiliary.speed);
-        (self.with_auxiliary).step(place, speed, h, None, |place, speed, slope| {
+        (self.with_auxiliary).step(place, speed, h, first, |place, speed, slope| {
             let (angle, own_place) = place.split_at(joints);
             let (speed, own_speed) = speed.split_at(joints);
             let (slope, own_slope) = slope.split_at_mut(joints);

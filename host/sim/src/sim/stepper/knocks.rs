@@ -8,7 +8,6 @@ use super::crossing::Crossing;
 use super::{Contact, Stepper};
 use crate::effects::{Coupling, Flank};
 use crate::sim::drive::DriveInput;
-use crate::sim::forces::StateView;
 use crate::sim::plant::Plant;
 use crate::sim::rows::Rows;
 
@@ -64,8 +63,8 @@ impl<R: Rows> Stepper<R> {
     /// By how much each gear's flanks are pressed, rad, or by which torque, N m, where rigid ones
     /// push; below 0 where they are apart, or would pull; far apart without a gap.
     fn pressed(&mut self, plant: &Plant, inputs: &[DriveInput]) -> R::Of<f64> {
-        if self.is_joined(plant) {
-            self.find_slope(plant, inputs);
+        if self.is_joined(plant) && !self.slope_is_known {
+            self.find_excess(plant, inputs);
         }
         let mut pressed = R::filled(f64::NEG_INFINITY, self.len());
         for (joint, plan) in plant.joints.iter().enumerate() {
@@ -95,18 +94,6 @@ impl<R: Rows> Stepper<R> {
     fn is_joined(&self, plant: &Plant) -> bool {
         let pushes = |flank: &Flank| *flank != Flank::None;
         plant.has_rigid_flanks && self.forces.auxiliary.flank.iter().any(pushes)
-    }
-
-    /// Finds the accelerations at the present state.
-    fn find_slope(&mut self, plant: &Plant, inputs: &[DriveInput]) {
-        let at = StateView {
-            angle: self.angle.as_ref(),
-            speed: self.speed.as_ref(),
-            contact: self.contact.as_ref(),
-        };
-        self.forces
-            .accelerate(plant, inputs, at, self.slope.as_mut());
-        self.slope_is_known = false;
     }
 
     /// The joint whose flanks first meet or part in the step just taken.
