@@ -3,7 +3,7 @@
 use super::armature::{ROTOR, ROTOR_ON_SLIDE};
 use super::{EffectInfo, Gear, Law, Needs, OnSlide, Parameter, Scope, Site, StartUnknown};
 
-/// No torque within the gap; beyond it flanks that push, never pull, and hardly rebound.
+/// No torque within the gap; at its ends flanks that push, never pull, and do not rebound.
 #[derive(Debug)]
 pub struct GearBacklash;
 
@@ -24,8 +24,8 @@ pub(super) static INFO: EffectInfo = EffectInfo {
     scope: Scope::DrivenJoint,
     needs: Needs::Nothing,
     on_slide: OnSlide::Own(&ON_SLIDE),
-    law: "no torque while |q_m - q| < gap_rad / 2, else that of the flanks; inertia_kg_m2 * \
-     d(w_m)/dt = motor - torque",
+    law: "no torque while |q_m - q| < gap_rad / 2; at a flank w_m = w until the torque turns; \
+     inertia_kg_m2 * d(w_m)/dt = motor - torque",
     parameters: &[
         ROTOR,
         Parameter::of("gap_rad", "free play, from flank to flank")
@@ -50,8 +50,8 @@ pub(super) static INFO: EffectInfo = EffectInfo {
 
 /// At a joint that slides.
 static ON_SLIDE: EffectInfo = EffectInfo {
-    law: "no force while |q_m - q| < gap_m / 2, else that of the flanks; inertia_kg * d(w_m)/dt = \
-     motor - force",
+    law: "no force while |q_m - q| < gap_m / 2; at a flank w_m = w until the force turns; \
+     inertia_kg * d(w_m)/dt = motor - force",
     parameters: &[
         ROTOR_ON_SLIDE,
         Parameter::of("gap_m", "free play, from flank to flank")

@@ -48,7 +48,9 @@ fn farthest(effects: &[(&str, usize, &[f64])]) -> (f64, usize) {
 fn closed_form_and_recursion_are_one_motion() {
     let coulomb: [(&str, usize, &[f64]); 2] = [("coulomb", 1, &[0.05]), ("coulomb", 2, &[0.02])];
     let viscous: [(&str, usize, &[f64]); 1] = [("viscous", 2, &[0.01])];
-    for effects in [coulomb.to_vec(), [&coulomb[..], &viscous].concat()] {
+    let play: [(&str, usize, &[f64]); 1] = [("gear_backlash", 2, &[1e-3, 0.02])];
+    for also in [&[][..], &viscous, &play] {
+        let effects = [&coulomb[..], also].concat();
         let (off, held) = farthest(&effects);
         assert!(off < 1e-9, "{off}");
         assert!(held > 50, "{held}");
@@ -171,45 +173,5 @@ fn a_motor_that_winds_up_its_gear_breaks_its_joint_away() {
     }
 }
 
-#[test]
-fn a_motor_crosses_its_gap_before_its_joint_moves() {
-    let plant = weightless(&[("gear_backlash", &[1e-3, 0.1])]);
-    // Half the gap at 50 rad/s^2: 45 ms.
-    assert_eq!(pulled_rad(&plant, 0.05, 0.04, 1e-3), 0.0);
-    let late = pulled_rad(&plant, 0.05, 0.5, 1e-3);
-    // Then both on average, the motor half a gap ahead.
-    let of_both = 0.5 * 0.05 * 0.5 * 0.5 / 3e-3;
-    assert!((late - (of_both - 0.05 / 3.0)).abs() < 5e-3, "{late}");
-}
-
-/// Angle of a joint that friction holds between the knocks of a motor of this inertia, kg m^2,
-/// which goes to and fro.
-fn knocked_rad(motor: f64, step_s: f64) -> f64 {
-    let play: (&str, &[f64]) = ("gear_backlash", &[motor, 0.1]);
-    let plant = weightless(&[("coulomb", &[0.03]), play]);
-    let mut stepper = Stepper::<FixedRows<1>>::new(&plant, &[0.0], &[0.0]);
-    let steps = (0.1 / step_s).round() as usize;
-    for torque_nm in [0.05, -0.08, 0.1, -0.06, 0.02, 0.09] {
-        let pull = DriveInput {
-            input: torque_nm * motor / 1e-3,
-            ..DriveInput::ZERO
-        };
-        for _ in 0..steps {
-            stepper.advance(&plant, &[pull], step_s);
-        }
-    }
-    stepper.angle[0]
-}
-
-#[test]
-fn knocks_come_when_they_do_whatever_the_step() {
-    // A motor half as heavy as its joint, and one twenty times as heavy.
-    for motor in [1e-3, 4e-2] {
-        let exact = knocked_rad(motor, 5e-5);
-        assert!((0.05..10.0).contains(&exact.abs()), "{exact}");
-        for step_s in [1e-2, 5e-3, 2e-3] {
-            let off_rad = (knocked_rad(motor, step_s) - exact).abs();
-            assert!(off_rad < 2e-3, "{motor} kg m^2, {step_s} s: {off_rad}");
-        }
-    }
-}
+#[cfg(test)]
+mod knocks;
