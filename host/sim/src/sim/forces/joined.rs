@@ -1,6 +1,6 @@
 //! Motors whose rigid flanks push: they move as their joints do, to whose inertia they add.
 
-use super::Forces;
+use super::{Forces, StateView};
 use crate::dynamics::{Chain, SpatialEquations};
 use crate::effects::{Coupling, Flank};
 use crate::sim::plant::Plant;
@@ -67,18 +67,15 @@ impl<R: Rows> Forces<R> {
     }
 
     /// Lets motors that move with their joints speed up as these do.
-    pub(super) fn carry_motors(&mut self, at: &[Contact], slope: &[f64]) {
+    pub(super) fn carry_motors(&mut self, contact: &[Contact], slope: &[f64]) {
         let Some(joined) = &self.joined else {
             return;
         };
-        for (joint, _) in joined
-            .motors
-            .iter()
-            .enumerate()
-            .filter(|(_, moves)| **moves)
-        {
-            let is_held = at[joint] == Contact::Held;
-            self.auxiliary.slope[joint] = if is_held { 0.0 } else { slope[joint] };
+        for (joint, moves_along) in joined.motors.iter().enumerate() {
+            if *moves_along {
+                let is_held = contact[joint] == Contact::Held;
+                self.auxiliary.slope[joint] = if is_held { 0.0 } else { slope[joint] };
+            }
         }
     }
 
@@ -89,25 +86,17 @@ impl<R: Rows> Forces<R> {
         direction * (self.drive_torque[joint] - speeding_up)
     }
 
-    /// By how much a push of 1 N m s at a joint changes the speeds of all, rad/s, the base's, m/s,
-    /// behind them; friction holds on to those that it holds, but for that joint.
-    pub fn response(
-        &mut self,
-        plant: &Plant,
-        joint: usize,
-        angle: &[f64],
-        contact: &[Contact],
-    ) -> Vec<f64> {
+    /// By how much a push of 1 N m s at a joint changes the speeds of all, rad/s, and behind them
+    /// the base's, m/s.
+    pub fn response(&mut self, plant: &Plant, joint: usize, angle: &[f64]) -> Vec<f64> {
         let joints = angle.len();
-        let still = vec![0.0; joints];
-        for (k, contact) in contact.iter().enumerate() {
-            self.held[k] = k != joint && *contact == Contact::Held;
-        }
-        let at = super::StateView {
+        let (still, contact) = (vec![0.0; joints], vec![Contact::Free; joints]);
+        let at = StateView {
             angle,
             speed: &still,
-            contact,
+            contact: &contact,
         };
+        self.held.as_mut().fill(false);
         let [rest, pushed] = [0.0, 1.0].map(|torque_nm| {
             self.torque.as_mut().fill(0.0);
             self.torque[joint] = torque_nm;
@@ -116,12 +105,7 @@ impl<R: Rows> Forces<R> {
             out.extend(self.auxiliary.slope.iter().skip(joints));
             out
         });
-        let changes = rest.iter().zip(&pushed).enumerate();
-        changes
-            .map(|(k, (rest, pushed))| {
-                let is_held = k < joints && self.held[k];
-                if is_held { 0.0 } else { pushed - rest }
-            })
-            .collect()
+        let changes = rest.iter().zip(&pushed);
+        changes.map(|(rest, pushed)| pushed - rest).collect()
     }
 }

@@ -11,7 +11,6 @@ use crate::model::Drive;
 use crate::sim::drive::OwnReading;
 use crate::sim::plant::Plant;
 use crate::sim::rows::Rows;
-use crate::sim::stepper::Contact;
 
 impl<R: Rows> Forces<R> {
     /// Finds how hard commands that jump kick joints about these angles.
@@ -37,10 +36,7 @@ impl<R: Rows> Forces<R> {
         }
         let kick = |joint: usize| match jump_nm(joint) {
             0.0 => 0.0,
-            jump_nm => {
-                let free = vec![Contact::Free; angle.len()];
-                jump_nm * self.response(plant, joint, angle, &free)[joint]
-            }
+            jump_nm => jump_nm * self.response(plant, joint, angle)[joint],
         };
         let kicks: Vec<f64> = (0..n).map(kick).collect();
         self.kicks.as_mut().copy_from_slice(&kicks);

@@ -144,10 +144,10 @@ impl<R: Rows> Stepper<R> {
         self.set_flank(plant, joint, flank);
     }
 
-    /// Gives motor and joint, which meet, one speed: momentum passes from one to the other.
+    /// Gives motor and joint, which meet, one speed: momentum passes from one to the other. That
+    /// takes no time, in which friction, which is no impulse, could hold any joint.
     fn knock(&mut self, plant: &Plant, joint: usize, motor_kg_m2: f64) {
-        let (angle, contact) = (self.angle.as_ref(), self.contact.as_ref());
-        let response = self.forces.response(plant, joint, angle, contact);
+        let response = self.forces.response(plant, joint, self.angle.as_ref());
         let [_, winding_rad_s] = self.wound(joint);
         let push_nm_s = winding_rad_s / (response[joint] + 1.0 / motor_kg_m2);
         let joints = self.len();
@@ -167,7 +167,7 @@ impl<R: Rows> Stepper<R> {
                 self.forces.auxiliary.speed[k] = self.speed[k];
             }
             self.contact[k] = match self.contact[k] {
-                Contact::Held if k == joint && by != 0.0 => Contact::Sliding(by.signum()),
+                Contact::Held if by != 0.0 => Contact::Sliding(by.signum()),
                 Contact::Sliding(direction) if direction * self.speed[k] < 0.0 => {
                     Contact::Sliding(-direction)
                 }

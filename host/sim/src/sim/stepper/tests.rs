@@ -173,5 +173,4 @@ fn a_motor_that_winds_up_its_gear_breaks_its_joint_away() {
     }
 }
 
-#[cfg(test)]
 mod knocks;
