@@ -13,8 +13,8 @@ fn walked(seed: u64) -> (Hidden, End) {
 }
 
 /// A spring that mass and inertia, both guessed, nearly take the place of; a dead zone whose width
-/// does not show beside its punch; a delay whose drive's figures are guessed; friction behind goals,
-/// read in counts whose number a turn is not named.
+/// does not show beside its punch; a delay whose drive's figures are guessed; friction behind
+/// goals, read in counts whose number a turn is not named.
 #[test]
 fn first_models_lead_to_what_is_hidden() {
     for (seed, in_first_model) in [(1, false), (7, false), (12, false), (18, true)] {
@@ -28,8 +28,8 @@ fn first_models_lead_to_what_is_hidden() {
     }
 }
 
-/// A spring of a driven arm, a delay of a regulated one, air about a free one. What was added leaves
-/// what noise and resolution leave.
+/// A spring of a driven arm, a delay of a regulated one, air about a free one. What was added
+/// leaves what noise and resolution leave.
 #[test]
 fn the_labs_pages_lead_there_too() {
     for (seed, drive) in [

@@ -86,6 +86,7 @@ pub(super) struct Stepper<R: Rows> {
     slope_is_known: bool,
     /// By how much held joints are pushed beyond their breakaway torque, N m, when last looked at.
     excess: R::Of<f64>,
+    /// The same where the step began.
     start_excess: R::Of<f64>,
     /// Inputs as the drives follow them, where effects remember.
     obeyed: Vec<DriveInput>,
@@ -185,7 +186,7 @@ impl<R: Rows> Stepper<R> {
         let mut left = step_s;
         self.follow(plant, inputs);
         let mut events = 0;
-        // Not so where the state is lost: what is left is then no number.
+        // Where the state is lost what is left is no number, and this ends, too.
         while left > NO_SPAN_S && events < MOST_EVENTS {
             self.part_pulled(plant, inputs);
             self.release(plant, inputs);
