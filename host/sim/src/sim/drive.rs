@@ -88,9 +88,8 @@ impl JointPlan {
     /// Longest step that follows a motor between rigid flanks, s: a part of the time in which its
     /// drive brakes it; infinite where the flanks of its gear are not rigid, or no torque falls
     /// with speed.
-    pub(super) fn motor_step_s(&self) -> f64 {
-        let rigid = self.coupling.filter(|coupling| coupling.has_rigid_flanks);
-        let Some(coupling) = rigid else {
+    pub(super) fn longest_motor_step_s(&self) -> f64 {
+        let Some(coupling) = self.rigid_flanks() else {
             return f64::INFINITY;
         };
         let motor = self.drive.motor();

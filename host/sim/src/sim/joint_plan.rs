@@ -140,6 +140,11 @@ impl JointPlan {
         self.sense.append(&mut self.rate_sense);
     }
 
+    /// Its gear where flanks that do not give carry the motor along whenever they push.
+    pub fn rigid_flanks(&self) -> Option<Coupling> {
+        self.coupling.filter(|coupling| coupling.has_rigid_flanks)
+    }
+
     /// Speed of the motor, rad/s, where the joint has this one.
     pub fn motor_speed_rad_s(&self, cells: &[MemoryCell], joint_rad_s: f64) -> f64 {
         let winding = |cell: usize| BodyState::from(cells[cell]).speed;

@@ -106,7 +106,7 @@ impl Plant {
         }
         for joint in &mut joints {
             joint.follows_input = joint.coupling.is_none() && joint.torque_is_held();
-            joint.motor_step_s = joint.motor_step_s();
+            joint.motor_step_s = joint.longest_motor_step_s();
         }
         let of_rates = joints.iter_mut().zip(&rates).filter(|(_, rate)| **rate);
         of_rates.for_each(|(joint, _)| joint.keep_rate_sensors());

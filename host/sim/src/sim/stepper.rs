@@ -216,7 +216,7 @@ impl<R: Rows> Stepper<R> {
         }
         for joint in 0..self.len() {
             if self.stopped(joint) {
-                self.stop(plant, joint);
+                self.stop(joint);
             }
         }
         self.slope_is_known = false;
@@ -229,7 +229,7 @@ impl<R: Rows> Stepper<R> {
         let crossing = (event.crossing).bent(self.crossed(plant, inputs, event));
         self.step_again(plant, inputs, crossing.share * span_s);
         if event.contact == Contact::Held {
-            self.stop(plant, event.joint);
+            self.stop(event.joint);
         }
         self.contact[event.joint] = event.contact;
         span_s * (1.0 - crossing.share)

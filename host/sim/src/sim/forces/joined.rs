@@ -36,13 +36,6 @@ impl Joined {
     }
 }
 
-/// The gear of a joint whose motor moves with it whenever a flank pushes.
-fn rigid(plant: &Plant, joint: usize) -> Option<Coupling> {
-    plant.joints[joint]
-        .coupling
-        .filter(|coupling| coupling.has_rigid_flanks)
-}
-
 impl<R: Rows> Forces<R> {
     /// Lets those motors move with their joints whose rigid flanks push, and no others.
     pub fn join_motors(&mut self, plant: &Plant) {
@@ -52,7 +45,7 @@ impl<R: Rows> Forces<R> {
         let mut is_new = false;
         for joint in 0..plant.len() {
             let pushes = self.auxiliary.flank[joint] != Flank::None;
-            if let Some(coupling) = rigid(plant, joint)
+            if let Some(coupling) = plant.joints[joint].rigid_flanks()
                 && joined.motors[joint] != pushes
             {
                 let by = if pushes { 1.0 } else { -1.0 };
@@ -64,6 +57,18 @@ impl<R: Rows> Forces<R> {
         if is_new {
             self.closed = R::closed(plant, &joined.chain);
         }
+    }
+
+    /// Whether a rigid flank pushes a joint, whose motor moves along.
+    pub fn is_joined(&self, joint: usize) -> bool {
+        let joined = self.joined.as_deref();
+        joined.is_some_and(|joined| joined.motors[joint])
+    }
+
+    /// Whether one pushes any joint.
+    pub fn is_any_joined(&self) -> bool {
+        let joined = self.joined.as_deref();
+        joined.is_some_and(|joined| joined.motors.contains(&true))
     }
 
     /// Lets motors that move with their joints speed up as these do.

@@ -63,7 +63,7 @@ impl<R: Rows> Stepper<R> {
     /// By how much each gear's flanks are pressed, rad, or by which torque, N m, where rigid ones
     /// push; below 0 where they are apart, or would pull; far apart without a gap.
     fn pressed(&mut self, plant: &Plant, inputs: &[DriveInput]) -> R::Of<f64> {
-        if self.is_joined(plant) && !self.slope_is_known {
+        if self.forces.is_any_joined() && !self.slope_is_known {
             self.find_excess(plant, inputs);
         }
         let mut pressed = R::filled(f64::NEG_INFINITY, self.len());
@@ -77,7 +77,7 @@ impl<R: Rows> Stepper<R> {
 
     fn pressed_at(&self, coupling: &Coupling, joint: usize) -> f64 {
         let flank = self.forces.auxiliary.flank[joint];
-        if let (Flank::Of(direction), true) = (flank, coupling.has_rigid_flanks) {
+        if let (Flank::Of(direction), true) = (flank, self.forces.is_joined(joint)) {
             return self.forces.pushed_nm(coupling, joint, direction);
         }
         let [wound, winding] = self.wound(joint);
@@ -88,12 +88,6 @@ impl<R: Rows> Stepper<R> {
     fn wound(&self, joint: usize) -> [f64; 2] {
         let at = [self.angle[joint], self.speed[joint]];
         self.forces.auxiliary.wound(joint, at)
-    }
-
-    /// Whether a rigid flank pushes any joint.
-    fn is_joined(&self, plant: &Plant) -> bool {
-        let pushes = |flank: &Flank| *flank != Flank::None;
-        plant.has_rigid_flanks && self.forces.auxiliary.flank.iter().any(pushes)
     }
 
     /// The joint whose flanks first meet or part in the step just taken.
@@ -110,13 +104,12 @@ impl<R: Rows> Stepper<R> {
 
     /// Lets go of motors whose rigid flanks would have to pull, the one that pulls most first.
     pub(super) fn part_pulled(&mut self, plant: &Plant, inputs: &[DriveInput]) {
-        while self.is_joined(plant) {
+        while self.forces.is_any_joined() {
             let pressed = self.pressed(plant, inputs);
-            let pushing = (0..self.len()).filter(|&joint| {
-                let flank = self.forces.auxiliary.flank[joint];
-                flank != Flank::None && pressed[joint] < 0.0
-            });
-            let pulled = pushing.min_by(|&a, &b| pressed[a].total_cmp(&pressed[b]));
+            let joined = (0..self.len()).filter(|&joint| self.forces.is_joined(joint));
+            let pulled = joined
+                .filter(|&joint| pressed[joint] < 0.0)
+                .min_by(|&a, &b| pressed[a].total_cmp(&pressed[b]));
             let Some(joint) = pulled else { return };
             self.set_flank(plant, joint, Flank::None);
         }
@@ -134,8 +127,7 @@ impl<R: Rows> Stepper<R> {
             Flank::None => Flank::Of(self.wound(joint)[0].signum()),
             Flank::Of(_) => Flank::None,
         };
-        let rigid = plant.joints[joint].coupling;
-        let rigid = rigid.filter(|coupling| coupling.has_rigid_flanks);
+        let rigid = plant.joints[joint].rigid_flanks();
         if let (Some(coupling), Flank::Of(direction)) = (rigid, flank) {
             let angle = self.angle[joint];
             self.forces.auxiliary.place[joint] = angle + direction * coupling.half_gap_rad();
@@ -144,8 +136,8 @@ impl<R: Rows> Stepper<R> {
         self.set_flank(plant, joint, flank);
     }
 
-    /// Gives motor and joint, which meet, one speed: momentum passes from one to the other. That
-    /// takes no time, in which friction, which is no impulse, could hold any joint.
+    /// Gives motor and joint, which meet, one speed: momentum passes from one to the other. It
+    /// takes no time, and friction is no impulse: it holds no joint through it.
     fn knock(&mut self, plant: &Plant, joint: usize, motor_kg_m2: f64) {
         let response = self.forces.response(plant, joint, self.angle.as_ref());
         let [_, winding_rad_s] = self.wound(joint);
@@ -158,12 +150,7 @@ impl<R: Rows> Stepper<R> {
                 continue;
             }
             self.speed[k] += by;
-            let moves_along = k == joint || self.forces.auxiliary.flank[k] != Flank::None;
-            if moves_along
-                && plant.joints[k]
-                    .coupling
-                    .is_some_and(|gear| gear.has_rigid_flanks)
-            {
+            if k == joint || self.forces.is_joined(k) {
                 self.forces.auxiliary.speed[k] = self.speed[k];
             }
             self.contact[k] = match self.contact[k] {
@@ -177,15 +164,10 @@ impl<R: Rows> Stepper<R> {
     }
 
     /// Holds a joint where it is, and a motor that moves with it.
-    pub(super) fn stop(&mut self, plant: &Plant, joint: usize) {
+    pub(super) fn stop(&mut self, joint: usize) {
         self.speed[joint] = 0.0;
         self.contact[joint] = Contact::Held;
-        let pushes = plant.has_rigid_flanks && self.forces.auxiliary.flank[joint] != Flank::None;
-        if pushes
-            && plant.joints[joint]
-                .coupling
-                .is_some_and(|gear| gear.has_rigid_flanks)
-        {
+        if self.forces.is_joined(joint) {
             self.forces.auxiliary.speed[joint] = 0.0;
         }
     }
