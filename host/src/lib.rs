@@ -8,6 +8,7 @@ pub use handstand_challenge as challenge;
 pub use handstand_control::{synth, sysid};
 pub use handstand_diagnose::{diagnose, discover, first_model};
 pub use handstand_experiment as experiment;
+pub use handstand_fit::{compare, fitting};
 #[cfg(feature = "lab")]
 pub use handstand_lab as lab;
 pub use handstand_link as link;
@@ -21,5 +22,5 @@ pub use handstand_report::plot;
 pub use handstand_robot::deploy;
 #[cfg(feature = "virtual-cm5")]
 pub use handstand_robot::robot_demo;
-pub use handstand_sim::{compare, fitting, sim};
+pub use handstand_sim::sim;
 pub use handstand_study as study;

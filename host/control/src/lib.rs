@@ -4,5 +4,6 @@
 pub mod synth;
 pub mod sysid;
 
+use handstand_fit::{compare, fitting};
 use handstand_model::{dynamics, effects, error, model, motion, output};
-use handstand_sim::{compare, fitting, sim};
+use handstand_sim::sim;

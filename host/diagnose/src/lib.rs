@@ -7,6 +7,6 @@ pub mod first_model;
 
 #[cfg(test)]
 use handstand_challenge as challenge;
+use handstand_fit::fitting;
 use handstand_logs as log;
 use handstand_model::{effects, error, model, motion, output};
-use handstand_sim::fitting;

@@ -26,9 +26,10 @@ mod tighten;
 mod tests;
 
 use handstand_diagnose::diagnose;
+use handstand_fit::fitting;
 use handstand_logs as log;
 use handstand_model::{dynamics, error, model, motion, output};
-use handstand_sim::{fitting, sim};
+use handstand_sim::sim;
 
 pub use candidates::can_be_moved;
 pub use condition::Condition;

@@ -19,13 +19,13 @@ use handstand_challenge as challenge;
 use handstand_control::synth;
 use handstand_diagnose::{diagnose, discover, first_model};
 use handstand_experiment as experiment;
+use handstand_fit::{compare, fitting};
 use handstand_link as link;
 use handstand_logs as log;
 use handstand_model::{effects, error, model, motion, output};
 use handstand_report as report;
 use handstand_report::plot;
 use handstand_robot::deploy;
-use handstand_sim::{compare, fitting};
 use handstand_study as study;
 
 pub use live::RobotAccess;

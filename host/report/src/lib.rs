@@ -64,7 +64,7 @@ use handstand_logs as log;
 use handstand_model::{dynamics, effects, error, model, motion, output};
 use handstand_study as study;
 
-use handstand_sim::{compare, fitting};
+use handstand_fit::{compare, fitting};
 
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;

@@ -12,6 +12,7 @@ use handstand_control::synth;
 use handstand_diagnose::diagnose;
 #[cfg(feature = "virtual-cm5")]
 use handstand_experiment as experiment;
+use handstand_fit::fitting;
 use handstand_link as link;
 #[cfg(feature = "virtual-cm5")]
 use handstand_logs as log;
@@ -22,6 +23,5 @@ use handstand_model::{dynamics, effects, error, model};
 use handstand_report as report;
 #[cfg(feature = "virtual-cm5")]
 use handstand_report::plot;
-use handstand_sim::fitting;
 #[cfg(feature = "virtual-cm5")]
 use handstand_study as study;

@@ -1,4 +1,4 @@
-//! A model simulated along its logs and in closed loops, fitted to them, and compared with them.
+//! A model simulated along its logs and in closed loops.
 //!
 //! ```
 //! # use handstand_model::Model;
@@ -18,8 +18,6 @@
 //! # Ok::<(), handstand_model::Error>(())
 //! ```
 
-pub mod compare;
-pub mod fitting;
 pub mod sim;
 
-use handstand_model::{dynamics, effects, error, model, motion, output};
+use handstand_model::{dynamics, effects, error, model, motion};

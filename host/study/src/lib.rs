@@ -38,8 +38,9 @@ mod verify;
 mod tests;
 
 use handstand_control::synth;
+use handstand_fit::compare;
 use handstand_model::{effects, error, model, motion, output};
-use handstand_sim::{compare, sim};
+use handstand_sim::sim;
 
 pub use case::{Case, Control, Designed};
 pub use closed_loop::compare_closed_loop;
