@@ -70,8 +70,8 @@ pub(super) fn experiments(
     added_kg: f64,
     seed: u64,
 ) -> Result<Vec<Experiment>> {
-    limits.check()?;
     can_be_moved(model)?;
+    limits.check(model)?;
     let mut planned: Vec<(f64, Excitation)> = Vec::new();
     let mut refused = None;
     for width in WIDTHS {
@@ -115,7 +115,7 @@ pub(super) fn experiments(
     Ok(all.collect())
 }
 
-/// A plan for the driven joints. The servos' numbers only keep them apart.
+/// A plan for the driven joints that may move. The servos' numbers only keep them apart.
 fn plan(
     model: &Model,
     limits: &ExperimentLimits,
@@ -123,7 +123,7 @@ fn plan(
     kinds: Vec<ExcitationKind>,
     seed: u64,
 ) -> ExcitePlan {
-    let joints = model.driven_joints().into_iter().map(|joint| {
+    let joints = limits.moved(model).into_iter().map(|joint| {
         let (low, high) = (limits.low_rad[joint], limits.high_rad[joint]);
         let (middle, half) = (0.5 * (low + high), 0.5 * width * (high - low));
         JointLimits {

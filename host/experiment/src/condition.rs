@@ -33,9 +33,13 @@ impl Condition {
             turned: true,
             ..condition
         };
-        let mut all = vec![as_it_stands, turned(as_it_stands)];
-        if added_kg > 0.0 && loaded.payload_at_m > 0.0 {
-            all.extend([loaded, turned(loaded)]);
+        let mut all = vec![as_it_stands];
+        // Gravity means the same to a turned robot in space, and its logs have no payload.
+        if !model.is_in_space() {
+            all.push(turned(as_it_stands));
+            if added_kg > 0.0 && loaded.payload_at_m > 0.0 {
+                all.extend([loaded, turned(loaded)]);
+            }
         }
         let motors = model.joints.iter().filter_map(|joint| joint.drive.motor());
         let nominal_v = motors.filter_map(|m| m.nominal_supply_v).reduce(f64::min);

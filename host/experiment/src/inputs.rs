@@ -3,7 +3,7 @@
 
 use super::condition::Condition;
 use super::limits::ExperimentLimits;
-use crate::dynamics::EquationsOfMotion;
+use crate::dynamics::{EquationsOfMotion, SpatialTree, TreeAtPose};
 use crate::excite::Excitation;
 use crate::model::{Drive, Model, hanging};
 use crate::motion::Motion;
@@ -49,9 +49,18 @@ impl Goals<'_> {
 pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> (Motion, Vec<f64>) {
     let mut motion = goals.blank(model);
     let driven = model.driven_joints();
+    let moved = limits.moved(model);
+    // A driven joint that may not move stays where the logs had it.
+    let row = |k: usize| -> Vec<f64> {
+        let mut of_joints = limits.low_rad.clone();
+        for (at, &joint) in moved.iter().enumerate() {
+            of_joints[joint] = goals.excitation.angle_rad[k][at];
+        }
+        driven.iter().map(|&joint| of_joints[joint]).collect()
+    };
     let mut start_rad = hanging(model);
-    for (at, &joint) in driven.iter().enumerate() {
-        start_rad[joint] = goals.excitation.angle_rad[0][at];
+    for (&joint, goal) in driven.iter().zip(row(0)) {
+        start_rad[joint] = goal;
     }
     let plant = Plant::new(model, &motion).read_on_time();
     let regulator = GoalRegulator::new(model, &motion, limits);
@@ -59,15 +68,11 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
     let mut memory = PlantMemory::default();
     let mut readings = vec![0.0; 2 * plant.signals()];
     for k in 0..motion.len() {
-        let angles = regulator.pose(&plant, &state, &driven, &goals.excitation.angle_rad[k]);
+        let (now, next) = (row(k), row((k + 1).min(motion.len() - 1)));
+        let angles = regulator.pose(&plant, &state, &driven, &now);
         for (at, &joint) in driven.iter().enumerate() {
-            let goal = goals.excitation.angle_rad[k][at];
-            let next = goals
-                .excitation
-                .angle_rad
-                .get(k + 1)
-                .map_or(goal, |row| row[at]);
-            let rate = (next - goal) * limits.hz;
+            let goal = now[at];
+            let rate = (next[at] - goal) * limits.hz;
             let is_on = goals.excitation.torque_on[k];
             let sent = if is_on {
                 regulator.sent(&plant, &state, &angles, joint, (goal, rate))
@@ -102,22 +107,49 @@ pub(super) fn at_rest(plant: &Plant, reading_rad: &[f64]) -> StartState {
     }
 }
 
+/// What a regulator must know of the rig's bodies.
+enum Body {
+    Chain(EquationsOfMotion),
+    Tree(SpatialTree),
+}
+
+impl Body {
+    fn of(model: &Model, motion: &Motion) -> Body {
+        if let Some(tree) = model.tree() {
+            return Body::Tree(tree);
+        }
+        let mut rig = model.rig(motion.turned);
+        if motion.payload_kg > 0.0 {
+            rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
+        }
+        Body::Chain(EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad))
+    }
+
+    /// A joint's inertia at a pose, kg m^2, and the torque that holds it there, N m.
+    fn inertia_and_hold(&self, pose_rad: &[f64], joint: usize) -> (f64, f64) {
+        let (mass, gravity) = match self {
+            Body::Chain(equations) => (equations.mass(pose_rad), equations.gravity(pose_rad)),
+            Body::Tree(tree) => {
+                let at_pose = TreeAtPose::new(tree, pose_rad);
+                (at_pose.mass(), at_pose.gravity())
+            }
+        };
+        (mass[(joint, joint)], gravity[joint])
+    }
+}
+
 /// Holds a simulated rig at goals: gravity fed forward, angle and speed fed back.
 struct GoalRegulator<'a> {
     model: &'a Model,
-    equations: EquationsOfMotion,
+    body: Body,
     torque_nm: f64,
 }
 
 impl<'a> GoalRegulator<'a> {
     fn new(model: &'a Model, motion: &Motion, limits: &ExperimentLimits) -> GoalRegulator<'a> {
-        let mut rig = model.rig(motion.turned);
-        if motion.payload_kg > 0.0 {
-            rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
-        }
         GoalRegulator {
             model,
-            equations: EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad),
+            body: Body::of(model, motion),
             torque_nm: limits.torque_nm.unwrap_or(f64::INFINITY),
         }
     }
@@ -150,8 +182,7 @@ impl<'a> GoalRegulator<'a> {
             Drive::Torque => None,
             Drive::Duty(motor) => Some(motor.stall_torque_nm),
         };
-        let inertia = self.equations.mass(pose_rad)[(joint, joint)];
-        let hold = self.equations.gravity(pose_rad)[joint];
+        let (inertia, hold) = self.body.inertia_and_hold(pose_rad, joint);
         let back = STIFFNESS * (goal_rad - angle) + DAMPING * (rate_rad_s - speed);
         let torque = hold + inertia * back;
         let most = self

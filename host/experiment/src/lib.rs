@@ -9,6 +9,7 @@
 //! A-optimality; Atkinson, Donev & Tobias 2007).
 
 mod candidates;
+mod clearance;
 mod condition;
 pub mod excite;
 mod follow_up;
@@ -32,6 +33,7 @@ use handstand_model::{dynamics, error, model, motion, output};
 use handstand_sim::sim;
 
 pub use candidates::can_be_moved;
+pub use clearance::Clearance;
 pub use condition::Condition;
 pub use follow_up::FollowUp;
 pub use limits::ExperimentLimits;

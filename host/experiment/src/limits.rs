@@ -1,5 +1,6 @@
 //! Within which angles, speeds, torques and time an experiment must stay.
 
+use super::clearance::Clearance;
 use crate::error::{Error, Result};
 use crate::model::{Drive, MeasuredSignal, Model};
 use crate::motion::Motion;
@@ -7,6 +8,8 @@ use std::f64::consts::PI;
 
 /// Samples over which a speed is taken from readings.
 const SPEED_SAMPLES: usize = 4;
+/// How far the others may push a joint that rests, rad: three degrees.
+const PUSHED_RAD: f64 = 0.05;
 /// Slowest and fastest sampling of an experiment, Hz.
 const RATE_HZ: (f64, f64) = (10.0, 1000.0);
 
@@ -26,6 +29,8 @@ pub struct ExperimentLimits {
     pub seconds: f64,
     /// Samples per second.
     pub hz: f64,
+    /// How near a robot in space may come to itself and to what it stands on.
+    pub clearance: Option<Clearance>,
 }
 
 impl ExperimentLimits {
@@ -51,6 +56,7 @@ impl ExperimentLimits {
             torque_nm: None,
             seconds,
             hz: rate_hz(motions),
+            clearance: Clearance::of_logs(model, motions),
         }
     }
 
@@ -58,32 +64,56 @@ impl ExperimentLimits {
     ///
     /// # Errors
     /// Which limit leaves nothing.
-    pub fn check(&self) -> Result<()> {
+    pub fn check(&self, model: &Model) -> Result<()> {
         let ranges = self.low_rad.iter().zip(&self.high_rad);
         for (joint, (low, high)) in (1..).zip(ranges) {
-            if low.is_nan() || high.is_nan() || low >= high {
+            // A joint of a robot in space may rest while the others move.
+            let rests = model.is_in_space() && low == high;
+            if !(rests || low < high) {
                 return Err(Error::usage(
                     format!("angles {low:.3} to {high:.3} rad leave joint {joint} no motion"),
                     "give a lower and a higher angle by --angles LOW..HIGH",
                 ));
             }
         }
+        if self.moved(model).is_empty() {
+            return Err(Error::usage(
+                "every joint that is driven rests in the logs",
+                "give a lower and a higher angle by --angles LOW..HIGH",
+            ));
+        }
         Ok(())
+    }
+
+    /// The driven joints that may move, counted from 0.
+    pub(super) fn moved(&self, model: &Model) -> Vec<usize> {
+        let mut driven = model.driven_joints();
+        driven.retain(|&joint| self.low_rad[joint] < self.high_rad[joint]);
+        driven
     }
 
     /// Whether a predicted motion stays within them.
     pub fn keeps(&self, model: &Model, motion: &Motion) -> bool {
-        (0..model.link_count()).all(|joint| {
-            let angles = motion.position_rad[joint].iter();
-            let within = angles
-                .filter(|angle| !angle.is_nan())
-                .all(|angle| (self.low_rad[joint]..=self.high_rad[joint]).contains(angle));
-            within
-                && fastest_rad_s(motion, joint) <= self.speed_rad_s[joint]
-                && self
-                    .torque_nm
-                    .is_none_or(|most| most_torque_nm(model, motion, joint) <= most)
-        })
+        let clears = (self.clearance.as_ref()).is_none_or(|least| least.keeps(model, motion));
+        let is_gentle = |joint: usize| {
+            let most_nm = || most_torque_nm(model, motion, joint);
+            self.torque_nm
+                .is_none_or(|allowed_nm| most_nm() <= allowed_nm)
+        };
+        clears
+            && (0..model.link_count()).all(|joint| {
+                self.keeps_angles(motion, joint)
+                    && fastest_rad_s(motion, joint) <= self.speed_rad_s[joint]
+                    && is_gentle(joint)
+            })
+    }
+
+    fn keeps_angles(&self, motion: &Motion, joint: usize) -> bool {
+        let (low, high) = (self.low_rad[joint], self.high_rad[joint]);
+        let pushed = if low == high { PUSHED_RAD } else { 0.0 };
+        let allowed = low - pushed..=high + pushed;
+        let mut angles = motion.position_rad[joint].iter();
+        angles.all(|angle| angle.is_nan() || allowed.contains(angle))
     }
 }
 

@@ -91,10 +91,7 @@ pub fn next(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Proposal> {
     let mut model = model.borrow().clone();
-    let turning = model
-        .inner
-        .hinges_only("proposed motions are for servos that turn")
-        .and_then(|()| (model.inner).planar_only("motions are proposed for planar chains"));
+    let turning = (model.inner).hinges_only("proposed motions are for servos that turn");
     turning.map_err(exception)?;
     for effect in &without {
         effect_named(effect).map_err(exception)?;

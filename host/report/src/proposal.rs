@@ -74,8 +74,9 @@ fn experiment_steps(experiment: &ProposedExperiment, follow_up: &FollowUp) -> Ve
     steps.push(match (follow_up.motion, follow_up.replay()) {
         (Some(file), Some(replay)) => format!("Play {} ({motion}): {replay}", file.display()),
         (Some(file), None) => format!(
-            "Play {} ({motion}) by the rig's own controller, and record {}: its columns are \
-             inputs of the drives, not goals of servos, and `replay` does not play them.",
+            "Play {} ({motion}) by the rig's own controller, and record {}: its columns are the \
+             drives' inputs as the log names them; `replay` plays goals of servos, goal1_rad and \
+             so on.",
             file.display(),
             follow_up.new_log()
         ),

@@ -30,7 +30,7 @@ use handstand::experiment::{
 };
 use handstand::fitting::{Horizon, effect_ids, free_parameters};
 use handstand::log::{LogRequest, LogSet, to_csv};
-use handstand::model::Model;
+use handstand::model::{JointNames, Model};
 use handstand::report::{next_steps, proposal_text};
 use handstand::{Error, Result, output};
 use serde_json::json;
@@ -104,7 +104,6 @@ pub fn run(args: &NextArgs, console: &Console) -> Result<ExitStatus> {
     effect_ids(&args.without)?;
     let mut model = input::model(&args.model)?;
     model.hinges_only("proposed motions are for servos that turn")?;
-    model.planar_only("motions are proposed for planar chains")?;
     can_be_moved(&model)?;
     let known = input::known(&model, &args.known)?;
     model.free.retain(|path| !known.contains(path));
@@ -155,7 +154,10 @@ pub fn run(args: &NextArgs, console: &Console) -> Result<ExitStatus> {
         "next": next_steps(diagnosis, proposal, &follow_up),
         "replayable": follow_up.replayable,
     });
-    console.result(&data, || proposal_text(diagnosis, proposal, &follow_up))?;
+    let names = JointNames::of(&model);
+    console.result(&data, || {
+        names.in_text(&proposal_text(diagnosis, proposal, &follow_up))
+    })?;
     Ok(ExitStatus::answer(helps))
 }
 

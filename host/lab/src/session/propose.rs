@@ -13,6 +13,7 @@ use crate::experiment::{
     Criterion, ExperimentLimits, FollowUp, ProposeOptions, inputs_alone, is_replayable, propose,
 };
 use crate::log::to_csv;
+use crate::model::JointNames;
 use crate::output::write_new;
 use crate::report::{next_steps, proposal_text};
 use std::path::Path;
@@ -39,7 +40,6 @@ impl LabSession {
             ));
         }
         model.hinges_only("proposed motions are for servos that turn")?;
-        model.planar_only("motions are proposed for planar chains")?;
         let (of, diagnosis) = self.diagnosis_for(report, &begun, &view)?;
         report.tell("motions");
         let logs = self.log_set(&view);
@@ -75,9 +75,11 @@ impl LabSession {
         };
         let (diagnosed, proposal) = (Some(&diagnosis), proposal.as_ref());
         let steps = next_steps(diagnosed, proposal, &follow_up);
+        let names = JointNames::of(&model);
+        let told = |text: &str| names.in_text(&self.typed_here(text));
         let saved = SavedProposal {
-            steps: steps.iter().map(|step| self.typed_here(step)).collect(),
-            text: self.typed_here(&proposal_text(diagnosed, proposal, &follow_up)),
+            steps: steps.iter().map(|step| told(step)).collect(),
+            text: told(&proposal_text(diagnosed, proposal, &follow_up)),
             motion_csv,
         };
         if let Some(text) = &saved.motion_csv {

@@ -1,0 +1,105 @@
+//! The next experiment with a robot in space.
+
+use crate::space::{CRANE, import_crane, printed, swung};
+use handstand::Model;
+use handstand::experiment::{Criterion, ExperimentLimits, ProposeOptions, propose_values};
+use handstand::fitting::{Horizon, free_parameters};
+use handstand::log::{LogRequest, read};
+use std::path::Path;
+
+/// A crane in this folder with a log of it.
+fn crane(at: &Path) -> Model {
+    import_crane(at, CRANE);
+    let model = Model::load(&at.join("crane.toml")).unwrap();
+    std::fs::write(at.join("a.csv"), swung(&model, 1)).unwrap();
+    model
+}
+
+/// Of a crane that is driven by torques: what holds it at goals needs the tree's gravity.
+#[test]
+fn a_proposed_motion_tightens_a_value_over_most_of_the_range_and_nowhere_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = crane(folder.path());
+    let motions = read(
+        &[LogRequest::whole(folder.path().join("a.csv"))],
+        &model.log,
+    )
+    .unwrap();
+    let limits = ExperimentLimits::of_logs(&model, &motions, 8.0);
+    let options = ProposeOptions {
+        limits: limits.clone(),
+        mass_kg: None,
+        criterion: Criterion::D,
+        seed: 1,
+    };
+    let values = free_parameters(&model, &["link3.mass_kg".to_string()]).unwrap();
+    let proposal =
+        propose_values(&model, &values, motions.clone(), Horizon::Whole, &options).unwrap();
+    let value = &proposal.values[0];
+    assert!(
+        value.standard_error_after < value.standard_error_before,
+        "{value:?}"
+    );
+    let experiment = proposal.experiment.unwrap();
+    let condition = experiment.condition;
+    assert!(
+        condition.payload_kg == 0.0 && !condition.turned,
+        "{condition:?}"
+    );
+    assert!(limits.keeps(&model, &experiment.motion));
+    for joint in 0..3 {
+        let span = |motion: &handstand::motion::Motion| {
+            let angles = &motion.position_rad[joint];
+            let [low, high] = [f64::min, f64::max].map(|of| angles.iter().copied().reduce(of));
+            high.unwrap() - low.unwrap()
+        };
+        let (asked, logged) = (span(&experiment.motion), span(&motions[0]));
+        assert!(
+            asked > 0.25 * logged,
+            "joint {joint}: {asked} of {logged} rad"
+        );
+    }
+    // Of a joint that rests in the logs nothing is asked.
+    let mut resting = motions;
+    for (joint, place) in [(0, 0.2), (2, -0.1)] {
+        resting[0].position_rad[joint].fill(place);
+    }
+    let options = ProposeOptions {
+        limits: ExperimentLimits::of_logs(&model, &resting, 8.0),
+        ..options
+    };
+    let proposal = propose_values(&model, &values, resting, Horizon::Whole, &options).unwrap();
+    let moved = proposal.experiment.unwrap().motion;
+    let most = |joint: usize, from: f64| {
+        let angles = moved.position_rad[joint].iter();
+        angles.fold(0.0, |most: f64, angle| most.max((angle - from).abs()))
+    };
+    assert!(most(0, 0.2) < 0.05 && most(2, -0.1) < 0.05 && most(1, 0.0) > 0.2);
+}
+
+#[test]
+fn the_command_writes_the_log_s_own_columns_and_calls_links_by_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    crane(at);
+    let next = [
+        "next",
+        "crane.toml",
+        "a.csv",
+        "--value",
+        "link3.mass_kg",
+        "--seconds",
+        "4",
+        "-o",
+        "next.csv",
+    ];
+    let [said, _] = printed(at, &next);
+    assert!(said.contains("link.head.mass_kg"), "{said}");
+    assert!(!said.contains("link3"), "{said}");
+    let motion = std::fs::read_to_string(at.join("next.csv")).unwrap();
+    let header = motion.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert!(
+        header.starts_with("time_s,slew.effort,luff.effort,roll.effort"),
+        "{header}"
+    );
+}
