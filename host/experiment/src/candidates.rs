@@ -95,28 +95,35 @@ pub(super) fn experiments(
     let all = pairs
         .into_par_iter()
         .map(|((width, excitation), condition)| {
-            let goals = Goals {
-                excitation,
-                condition,
-            };
-            let (motion, start_rad) = asked(model, &goals, limits);
-            Experiment {
-                kinds: excitation
-                    .motions
-                    .iter()
-                    .map(|motion| motion.kind)
-                    .collect(),
-                width: *width,
-                condition,
-                start_rad,
-                motion,
-            }
+            experiment(model, (*width, excitation), condition, limits)
         });
     Ok(all.collect())
 }
 
+/// These goals as inputs of the model's drives, under a condition.
+pub(super) fn experiment(
+    model: &Model,
+    (width, excitation): (f64, &Excitation),
+    condition: Condition,
+    limits: &ExperimentLimits,
+) -> Experiment {
+    let goals = Goals {
+        excitation,
+        condition,
+    };
+    let (motion, start_rad) = asked(model, &goals, limits);
+    let kinds = excitation.motions.iter().map(|motion| motion.kind);
+    Experiment {
+        kinds: kinds.collect(),
+        width,
+        condition,
+        start_rad,
+        motion,
+    }
+}
+
 /// A plan for the driven joints that may move. The servos' numbers only keep them apart.
-fn plan(
+pub(super) fn plan(
     model: &Model,
     limits: &ExperimentLimits,
     width: f64,

@@ -15,7 +15,8 @@ pub struct Clearance {
     lines: Vec<CentreLines>,
     /// Against free fall; none where nothing falls.
     up: Option<Vector3<f64>>,
-    /// Two links that no joint joins, and the least distance of their centre lines, m.
+    /// Two links that no joint and no short link joins, and the least distance of their centre
+    /// lines, m.
     apart_m: Vec<((usize, usize), f64)>,
     /// Per link, the least height of its centre lines over the base's origin, m.
     above_m: Vec<f64>,
@@ -57,11 +58,17 @@ impl Clearance {
             ends.push(Point3::from(beyond * tree.links[link].com_m));
             CentreLines { ends }
         });
-        let is_joined = |a: usize, b: usize| tree.links[b].parent == Some(a);
+        // Two links with a short one between them are near in every pose.
+        let are_near = |a: usize, b: usize| {
+            let between = tree.links[b].parent;
+            let grandparent = between.and_then(|between| tree.links[between].parent);
+            let is_short = tree.links[b].place.translation.vector.norm() < radii_m[a] + radii_m[b];
+            between == Some(a) || grandparent == Some(a) && is_short
+        };
         let pairs = links
             .clone()
             .flat_map(|b| (0..b).map(move |a| (a, b)))
-            .filter(|&(a, b)| !is_joined(a, b));
+            .filter(|&(a, b)| !are_near(a, b));
         let mut clearance = Clearance {
             lines: lines.collect(),
             up: (-tree.gravity_m_s2).try_normalize(0.0),
@@ -83,6 +90,13 @@ impl Clearance {
         Some(clearance)
     }
 
+    /// The same over a plane at another height over the base's origin, m, or over none.
+    pub fn over(mut self, floor_m: Option<f64>) -> Clearance {
+        let floor_m = floor_m.unwrap_or(f64::NEG_INFINITY);
+        self.above_m.iter_mut().for_each(|least| *least += floor_m);
+        self
+    }
+
     /// Allows what joints at these angles and links in these poses come to.
     fn allow(&mut self, angle_rad: &[f64], poses: &[Isometry3<f64>]) {
         for (range, angle) in self.ranges_rad.iter_mut().zip(angle_rad) {
@@ -97,23 +111,25 @@ impl Clearance {
         }
     }
 
-    /// Whether a motion of the model comes no nearer, and stays within the end stops. Samples at
-    /// which not every joint's angle is known say nothing.
-    pub fn keeps(&self, model: &Model, motion: &Motion) -> bool {
-        let Some(tree) = model.tree() else {
-            return true;
-        };
+    /// What of it a motion of the model does not keep, in words that read on from "the model".
+    /// Samples at which not every joint's angle is known say nothing.
+    pub fn broken_by(&self, model: &Model, motion: &Motion) -> Option<&'static str> {
+        let tree = model.tree()?;
         let plant = Plant::new(model, motion);
-        coordinates(&plant, motion).all(|angle_rad| {
-            let mut ranges = self.ranges_rad.iter().zip(&angle_rad);
-            let is_within = ranges
-                .all(|(range, angle)| range.is_none_or(|(low, high)| (low..=high).contains(angle)));
+        coordinates(&plant, motion).find_map(|angle_rad| {
             let lines = self.lines_at(&tree.poses(&angle_rad));
+            let mut ranges = self.ranges_rad.iter().zip(&angle_rad);
             let mut apart = self.apart_m.iter();
-            let mut above = self.above_m.iter().enumerate();
-            is_within
-                && apart.all(|((a, b), least)| nearest_m(&lines[*a], &lines[*b]) >= *least)
-                && above.all(|(link, least)| height_m(&lines[link], self.up) >= *least)
+            let mut above = self.above_m.iter().zip(&lines);
+            if ranges.any(|(range, angle)| is_beyond(*range, *angle)) {
+                Some("turns a joint beyond its end stop")
+            } else if apart.any(|((a, b), least)| nearest_m(&lines[*a], &lines[*b]) < *least) {
+                Some("brings two links too near to each other")
+            } else if above.any(|(least, lines)| height_m(lines, self.up) < *least) {
+                Some("dips a link into the plane that it stands on")
+            } else {
+                None
+            }
         })
     }
 
@@ -125,6 +141,10 @@ impl Clearance {
         });
         placed.collect()
     }
+}
+
+fn is_beyond(range: Option<(f64, f64)>, angle: f64) -> bool {
+    range.is_some_and(|(low, high)| !(low..=high).contains(&angle))
 }
 
 /// The angles of the links' joints at each sample at which all are known, rad.

@@ -60,6 +60,33 @@ impl ExperimentLimits {
         }
     }
 
+    /// What a model's file knows without a log: the end stops of a robot in space, `reach_rad` to
+    /// either side of 0 where it has none; and this speed, rad/s, up to what the motors have.
+    pub fn of_model(
+        model: &Model,
+        (reach_rad, speed_rad_s): (f64, f64),
+        hz: f64,
+    ) -> ExperimentLimits {
+        let ranges = (0..model.link_count())
+            .map(|joint| model.range(joint).unwrap_or((-reach_rad, reach_rad)));
+        let (low_rad, high_rad): (Vec<f64>, Vec<f64>) = ranges.unzip();
+        let fastest = model.joints.iter().map(|joint| {
+            let motor = joint.drive.motor();
+            motor.map_or(speed_rad_s, |motor| {
+                speed_rad_s.min(motor.no_load_speed_rad_s)
+            })
+        });
+        ExperimentLimits {
+            low_rad: model.convention_rad(&low_rad),
+            high_rad: model.convention_rad(&high_rad),
+            speed_rad_s: fastest.collect(),
+            torque_nm: None,
+            seconds: f64::INFINITY,
+            hz,
+            clearance: Clearance::of_logs(model, &[]),
+        }
+    }
+
     /// Whether there is something between them.
     ///
     /// # Errors
@@ -94,18 +121,26 @@ impl ExperimentLimits {
 
     /// Whether a predicted motion stays within them.
     pub fn keeps(&self, model: &Model, motion: &Motion) -> bool {
-        let clears = (self.clearance.as_ref()).is_none_or(|least| least.keeps(model, motion));
-        let is_gentle = |joint: usize| {
+        self.broken_by(model, motion).is_none()
+    }
+
+    /// Which of them a predicted motion leaves, in words that read on from "the model".
+    pub fn broken_by(&self, model: &Model, motion: &Motion) -> Option<&'static str> {
+        let of_joint = |joint: usize| {
             let most_nm = || most_torque_nm(model, motion, joint);
-            self.torque_nm
-                .is_none_or(|allowed_nm| most_nm() <= allowed_nm)
+            if !self.keeps_angles(motion, joint) {
+                Some("leaves the angles of a joint")
+            } else if fastest_rad_s(motion, joint) > self.speed_rad_s[joint] {
+                Some("turns a joint faster than it may")
+            } else if self.torque_nm.is_some_and(|most| most_nm() > most) {
+                Some("asks a drive for more torque than it may")
+            } else {
+                None
+            }
         };
-        clears
-            && (0..model.link_count()).all(|joint| {
-                self.keeps_angles(motion, joint)
-                    && fastest_rad_s(motion, joint) <= self.speed_rad_s[joint]
-                    && is_gentle(joint)
-            })
+        let clearance = self.clearance.as_ref();
+        let broken = clearance.and_then(|least| least.broken_by(model, motion));
+        broken.or_else(|| (0..model.link_count()).find_map(of_joint))
     }
 
     fn keeps_angles(&self, motion: &Motion, joint: usize) -> bool {

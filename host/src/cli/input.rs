@@ -261,6 +261,22 @@ pub fn range(option: &str, text: &str) -> Result<(f64, f64)> {
     })
 }
 
+/// A range for each of so many joints: one that is given for all, or one for each, parted by `/`.
+///
+/// # Errors
+/// Another number of them, or what is no range.
+pub fn ranges(option: &str, text: &str, joints: usize) -> Result<Vec<(f64, f64)>> {
+    let given: Vec<&str> = text.split('/').collect();
+    if given.len() != 1 && given.len() != joints {
+        return Err(Error::usage(
+            format!("{} ranges for {joints} joints", given.len()),
+            "give one range for all joints, or one for each",
+        ));
+    }
+    let of_joint = |joint: usize| range(option, given.get(joint).unwrap_or(&given[0]));
+    (0..joints).map(of_joint).collect()
+}
+
 /// Addresses of values that were measured by themselves.
 ///
 /// # Errors

@@ -32,7 +32,7 @@ use handstand::fitting::{Horizon, effect_ids, free_parameters};
 use handstand::log::{LogRequest, LogSet, to_csv};
 use handstand::model::{JointNames, Model};
 use handstand::report::{next_steps, proposal_text};
-use handstand::{Error, Result, output};
+use handstand::{Result, output};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -204,17 +204,8 @@ impl NextArgs {
         let mut limits = of_logs;
         let joints = model.link_count();
         if let Some(text) = &self.angles {
-            let ranges: Vec<&str> = text.split('/').collect();
-            if ranges.len() != 1 && ranges.len() != joints {
-                return Err(Error::usage(
-                    format!("{} ranges for {joints} joints", ranges.len()),
-                    "give one range for all joints, or one for each",
-                ));
-            }
-            for joint in 0..joints {
-                let range = ranges.get(joint).unwrap_or(&ranges[0]);
-                (limits.low_rad[joint], limits.high_rad[joint]) = input::range("angles", range)?;
-            }
+            let angles = input::ranges("angles", text, joints)?;
+            (limits.low_rad, limits.high_rad) = angles.into_iter().unzip();
         }
         if let Some(speed) = self.speed {
             limits.speed_rad_s = vec![speed; joints];

@@ -1,6 +1,6 @@
 //! The next experiment with a robot in space.
 
-use crate::space::{CRANE, import_crane, printed, swung};
+use crate::space::{CRANE, import_crane, printed, refused, run, swung};
 use handstand::Model;
 use handstand::experiment::{Criterion, ExperimentLimits, ProposeOptions, propose_values};
 use handstand::fitting::{Horizon, free_parameters};
@@ -102,4 +102,32 @@ fn the_command_writes_the_log_s_own_columns_and_calls_links_by_their_names() {
         header.starts_with("time_s,slew.effort,luff.effort,roll.effort"),
         "{header}"
     );
+}
+
+#[test]
+fn first_motions_clear_the_floor_and_are_called_by_the_joints_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    crane(at);
+    // A crane hangs below its base.
+    let floor = ["excite", "first.csv", "--model", "crane.toml"];
+    let (code, said) = refused(at, &floor);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("the plane that it stands on"), "{said}");
+    assert!(said.contains("--floor"), "{said}");
+    let excite = [&floor[..], &["--floor", "none", "--json"]].concat();
+    let (data, _) = run(at, &excite);
+    let names = data["joints"].as_array().unwrap().iter();
+    let names: Vec<&str> = names
+        .map(|joint| joint["joint"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["slew", "luff", "roll"]);
+    assert_eq!(data["motions"].as_array().unwrap().len(), 4, "{data}");
+    let width = data["width"].as_f64().unwrap();
+    assert!((0.1..=0.85).contains(&width), "{width}");
+    let text = std::fs::read_to_string(at.join("first.csv")).unwrap();
+    let header = text.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert_eq!(header, "time_s,slew.effort,luff.effort,roll.effort");
+    let both = [&floor[..], &["--joints", "1", "--force"]].concat();
+    assert_eq!(refused(at, &both).0, 2);
 }

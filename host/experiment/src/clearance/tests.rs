@@ -58,7 +58,7 @@ fn through(poses: &[[f64; 3]]) -> Motion {
 fn keeps(logged: &[[f64; 3]], asked: [f64; 3]) -> bool {
     let model = arm();
     let clearance = Clearance::of_logs(&model, &[through(logged)]).unwrap();
-    clearance.keeps(&model, &through(&[asked]))
+    clearance.broken_by(&model, &through(&[asked])).is_none()
 }
 
 const LEVEL: [f64; 3] = [0.0; 3];
@@ -68,6 +68,14 @@ fn a_robot_stays_above_the_plane_that_it_stands_on_or_where_its_logs_were() {
     // The tip of the finger is 0.5 m away, 0.3 m up: it meets the plane at 0.64 rad.
     assert!(keeps(&[LEVEL], [0.55, 0.0, 0.0]));
     assert!(!keeps(&[LEVEL], [0.65, 0.0, 0.0]));
+    let model = arm();
+    let over = |floor_m| {
+        let clearance = Clearance::of_logs(&model, &[]).unwrap().over(floor_m);
+        clearance.broken_by(&model, &through(&[[0.65, 0.0, 0.0]]))
+    };
+    assert_eq!([over(Some(-0.05)), over(None)], [None, None]);
+    assert_eq!(over(Some(0.1)), over(Some(0.0)));
+    assert!(over(Some(0.0)).unwrap().contains("plane"));
     // On an edge of a table its logs were lower already.
     assert!(keeps(&[LEVEL, [0.8, 0.0, 0.0]], [0.65, 0.0, 0.0]));
 }
