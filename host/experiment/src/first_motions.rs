@@ -6,7 +6,7 @@ use super::limits::ExperimentLimits;
 use super::prediction::predicted_motion;
 use crate::error::{Error, Result};
 use crate::excite::{Excitation, ExcitationKind, excite};
-use crate::model::Model;
+use crate::model::{Drive, Model};
 use crate::motion::Motion;
 use crate::output::number::percent;
 
@@ -63,9 +63,23 @@ pub fn first_motions(
                 "even over {} of the ranges the model {broken}",
                 percent(width)
             ),
-            "give ranges about a pose that is clear by --angles, one for each joint, another \
-             --speed, or where the floor is by --floor",
+            remedy(model),
         ));
     }
     Err(refused.unwrap_or_else(|| Error::usage("no motion is asked for", "name kinds of motion")))
+}
+
+fn remedy(model: &Model) -> String {
+    let clear = "give ranges about a pose that is clear by --angles, one for each joint, another \
+                 --speed, or where the floor is by --floor";
+    let mut drives = model.joints.iter().map(|joint| &joint.drive);
+    // Torques that were found with a regulator play without one, and small errors grow.
+    let takes_torque = |drive: &Drive| matches!(drive, Drive::Torque | Drive::Duty(_));
+    if drives.any(takes_torque) {
+        return format!(
+            "{clear}; torques play in open loop, so that little time and friction in the model \
+             help, and servos that take goals are `drive = \"position\"`"
+        );
+    }
+    clear.to_string()
 }

