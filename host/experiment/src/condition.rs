@@ -10,9 +10,9 @@ const OTHER_SUPPLY: f64 = 0.8;
 /// Conditions of one experiment; the default is the rig as it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Condition {
-    /// Known mass bolted onto the last link, kg.
+    /// Known mass bolted onto the last link, kg; onto a robot in space where its logs have it.
     pub payload_kg: f64,
-    /// Where it is bolted on, m from the last joint.
+    /// Where it is bolted on, m from the last joint of a planar chain.
     pub payload_at_m: f64,
     /// Whether the rig is turned by 180 degrees about the vertical.
     pub turned: bool,
@@ -33,12 +33,18 @@ impl Condition {
             turned: true,
             ..condition
         };
-        let mut all = vec![as_it_stands];
-        // Gravity means the same to a turned robot in space, and its logs have no payload.
-        if !model.is_in_space() {
-            all.push(turned(as_it_stands));
-            if added_kg > 0.0 && loaded.payload_at_m > 0.0 {
-                all.extend([loaded, turned(loaded)]);
+        let has_place = if model.is_in_space() {
+            model.log.payload_on.is_some()
+        } else {
+            loaded.payload_at_m > 0.0
+        };
+        let bolted = (added_kg > 0.0 && has_place).then_some(loaded);
+        let mut all = Vec::new();
+        for condition in std::iter::once(as_it_stands).chain(bolted) {
+            all.push(condition);
+            // Gravity means the same to a turned robot in space.
+            if !model.is_in_space() {
+                all.push(turned(condition));
             }
         }
         let motors = model.joints.iter().filter_map(|joint| joint.drive.motor());
@@ -64,6 +70,14 @@ impl Condition {
         let mut lines = Vec::new();
         if self.payload_kg > 0.0 {
             let (mass, at) = (given(self.payload_kg), given(self.payload_at_m));
+            let place = match model.log.payload_on {
+                None => format!("its centre {at} m from the last joint"),
+                Some(place) => format!(
+                    "its centre at {:?} m of link {}",
+                    place.at_m,
+                    place.link + 1
+                ),
+            };
             let column = match &log.payload {
                 Some(column) => format!("write it in the column `{}`", column.name),
                 None => format!(
@@ -71,9 +85,7 @@ impl Condition {
                      {{ column = \"payload_kg\", unit = \"kg\", at_m = {at} }}"
                 ),
             };
-            lines.push(format!(
-                "Add a known mass of {mass} kg, its centre {at} m from the last joint; {column}."
-            ));
+            lines.push(format!("Add a known mass of {mass} kg, {place}; {column}."));
         }
         if self.turned {
             let column = match &log.turned {
@@ -108,9 +120,13 @@ pub(super) fn payload_at_m(model: &Model) -> f64 {
     }
 }
 
-/// A known mass that a rig carries easily: three tenths of the last link's, to one digit, kg.
+/// A known mass that a rig carries easily: three tenths of its link's, to one digit, kg.
 pub(super) fn usual_mass_kg(model: &Model) -> f64 {
-    let share = 0.3 * model.links.last().map_or(0.0, |link| link.mass_kg);
+    let link = match model.log.payload_on {
+        Some(place) => model.links.get(place.link),
+        None => model.links.last(),
+    };
+    let share = 0.3 * link.map_or(0.0, |link| link.mass_kg);
     if share <= 0.0 {
         return 0.0;
     }

@@ -118,14 +118,11 @@ enum Body {
 
 impl Body {
     fn of(model: &Model, motion: &Motion) -> Body {
-        if let Some(tree) = model.tree() {
-            return Body::Tree(tree);
-        }
-        let mut rig = model.rig(motion.turned);
-        if motion.payload_kg > 0.0 {
-            rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
-        }
-        Body::Chain(EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad))
+        let rig = model.rig_with(motion.turned, motion.payload_kg);
+        rig.tree.map_or_else(
+            || Body::Chain(EquationsOfMotion::new(&rig.chain, rig.gravity_turn_rad)),
+            Body::Tree,
+        )
     }
 
     /// Torques that hold the bodies at a pose and speed them up so, N m, other speeds left aside.

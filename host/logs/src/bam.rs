@@ -120,6 +120,7 @@ fn own_columns(table: &LogTable, split_at_gap_s: Option<f64>) -> LogColumns {
         torque_on: Some(TORQUE_ON).filter(has).map(str::to_string),
         payload: Some(column(PAYLOAD, Dimension::Mass)),
         payload_at_m: 0.0,
+        payload_on: None,
         turned: None,
         joints: vec![JointColumns {
             position: mean(POSITION),

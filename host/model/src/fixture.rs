@@ -30,6 +30,7 @@ pub fn columns() -> LogColumns {
         torque_on: None,
         payload: None,
         payload_at_m: 0.0,
+        payload_on: None,
         turned: None,
         joints: vec![JointColumns {
             position: Some(column("q", "rad").into()),

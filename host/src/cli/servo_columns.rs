@@ -128,6 +128,7 @@ impl ServoColumns {
             torque_on: None,
             payload: None,
             payload_at_m: 0.0,
+            payload_on: None,
             turned: None,
             joints: vec![JointColumns {
                 position: Some(output.clone().into()),

@@ -24,6 +24,7 @@ mod space_gains_told;
 mod space_linear;
 mod space_names;
 mod space_next;
+mod space_payload;
 mod space_search;
 mod space_view;
 mod spoiled;

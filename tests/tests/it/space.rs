@@ -5,7 +5,7 @@ use crate::import::Draws;
 use crate::program;
 use crate::simulators::{Case, State, largest_difference, python};
 use handstand::Model;
-use handstand::dynamics::{SpatialEquations, SpatialWorkspace};
+use handstand::dynamics::{SpatialEquations, SpatialTree, SpatialWorkspace};
 use handstand::model::import::{ImportPlan, SpacePlan, import};
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -224,10 +224,15 @@ pub(crate) const CRANE: &str = r#"<robot name="crane"><link name="base"/>
 
 const HIDDEN_NM_S_RAD: f64 = 0.06;
 
+/// [`swung_tree`] of a model.
+pub(crate) fn swung(model: &Model, number: usize) -> String {
+    swung_tree(&model.tree().unwrap(), number)
+}
+
 /// A motion and the torques that it takes by Newton and Euler, viscous friction at the boom
 /// included, at 500 Hz, angles read to 1e-4 rad.
-pub(crate) fn swung(model: &Model, number: usize) -> String {
-    let equations = SpatialEquations::new(&model.tree().unwrap());
+pub(crate) fn swung_tree(tree: &SpatialTree, number: usize) -> String {
+    let equations = SpatialEquations::new(tree);
     let mut work = SpatialWorkspace::default();
     let mut text = String::from(
         "time_s,slew.position,slew.effort,luff.position,luff.effort,roll.position,roll.effort\n",

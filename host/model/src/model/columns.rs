@@ -197,6 +197,15 @@ pub struct ArmFigures {
     pub com_m: f64,
 }
 
+/// A place on a link of a robot in space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkPlace {
+    /// The link, counted from 0.
+    pub link: usize,
+    /// In its frame, m.
+    pub at_m: [f64; 3],
+}
+
 /// Every column the model reads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogColumns {
@@ -208,10 +217,13 @@ pub struct LogColumns {
     pub supply: Option<Column>,
     /// 1 while the drives are energised, 0 while they are released.
     pub torque_on: Option<String>,
-    /// Mass bolted onto the last link during a motion; constant within one.
+    /// Mass bolted onto the last link, or a link of a robot in space, during a motion; constant
+    /// within one.
     pub payload: Option<Column>,
-    /// Where the payload sits, m from the last joint along the link.
+    /// Where the payload of a planar chain sits, m from the last joint along the link.
     pub payload_at_m: f64,
+    /// Where that of a robot in space sits.
+    pub payload_on: Option<LinkPlace>,
     /// 1 when the rig was turned by 180 degrees about the vertical, 0 otherwise; constant within a
     /// motion.
     pub turned: Option<String>,

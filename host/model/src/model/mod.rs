@@ -26,7 +26,9 @@ pub mod suggest;
 mod uncertain;
 mod unit;
 
-pub use columns::{ArmFigures, Column, ColumnMean, JointColumns, LogColumns, MeasuredSignal};
+pub use columns::{
+    ArmFigures, Column, ColumnMean, JointColumns, LinkPlace, LogColumns, MeasuredSignal,
+};
 pub use field::{JointField, LinkField};
 pub use joint::{Drive, Joint, Motor, effect_on};
 pub use joint_names::JointNames;

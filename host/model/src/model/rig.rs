@@ -29,6 +29,22 @@ impl Model {
         }
     }
 
+    /// [`Model::rig`] with a mass bolted on where its logs have the payload.
+    pub fn rig_with(&self, turned: bool, payload_kg: f64) -> Rig {
+        let mut rig = self.rig(turned);
+        if payload_kg > 0.0 {
+            match (&mut rig.tree, self.log.payload_on) {
+                (Some(tree), Some(place)) => {
+                    tree.bolt_on(place.link, payload_kg, place.at_m.into())
+                }
+                // Whose logs have no payload carries none.
+                (Some(_), None) => {}
+                (None, _) => rig.chain.bolt_on(payload_kg, self.log.payload_at_m),
+            }
+        }
+        rig
+    }
+
     /// The chain with the body effects applied; `turned` as in [`Rig::turned`].
     pub fn rig(&self, turned: bool) -> Rig {
         let mut rig = Rig {

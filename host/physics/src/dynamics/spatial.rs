@@ -66,6 +66,18 @@ impl SpatialTree {
         self.links.is_empty()
     }
 
+    /// Adds a point mass to a link, at this place in its frame, m.
+    pub fn bolt_on(&mut self, link: usize, mass_kg: f64, at_m: Vector3<f64>) {
+        let Some(link) = self.links.get_mut(link) else {
+            return;
+        };
+        let total_kg = link.mass_kg + mass_kg;
+        let com_m = (link.mass_kg * link.com_m + mass_kg * at_m) / total_kg;
+        link.inertia_kg_m2 +=
+            about(link.mass_kg, link.com_m - com_m) + about(mass_kg, at_m - com_m);
+        (link.mass_kg, link.com_m) = (total_kg, com_m);
+    }
+
     /// Poses of the links' frames in the base's.
     pub fn poses(&self, angle_rad: &[f64]) -> Vec<Isometry3<f64>> {
         let mut poses: Vec<Isometry3<f64>> = Vec::with_capacity(self.links.len());
@@ -108,6 +120,11 @@ impl SpatialTree {
         }
         (kinetic, potential)
     }
+}
+
+/// Moments of inertia of a point mass about a point from which it lies `arm_m`, kg m^2.
+fn about(mass_kg: f64, arm_m: Vector3<f64>) -> Matrix3<f64> {
+    mass_kg * (Matrix3::from_diagonal_element(arm_m.norm_squared()) - arm_m * arm_m.transpose())
 }
 
 #[cfg(test)]

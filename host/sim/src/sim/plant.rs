@@ -81,10 +81,7 @@ impl Plant {
             .iter()
             .map(|j| JointPlan::ideal(&j.drive))
             .collect();
-        let mut rig = model.rig(motion.turned);
-        if motion.payload_kg > 0.0 {
-            rig.chain.bolt_on(motion.payload_kg, model.log.payload_at_m);
-        }
+        let rig = model.rig_with(motion.turned, motion.payload_kg);
         // Those of one site act in the library's order, however the file lists them.
         let mut needs = Vec::new();
         for effect in EFFECTS.iter().chain(CONTROLS) {

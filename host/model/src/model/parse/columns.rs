@@ -3,8 +3,8 @@
 use super::super::limits::Limits;
 use super::super::reader::Table;
 use super::super::{
-    ArmFigures, Column, ColumnMean, Dimension, Joint, JointColumns, Link, LogColumns, RateSensor,
-    Unit,
+    ArmFigures, Column, ColumnMean, Dimension, Joint, JointColumns, Link, LinkPlace, LogColumns,
+    RateSensor, Robot, Unit,
 };
 use super::{ABOVE_ZERO, EITHER_SIGN, NOT_NEGATIVE};
 use crate::effects::Axis;
@@ -24,7 +24,12 @@ const MOVABLE: [&str; 5] = ["position", "velocity", "gyro", "tachometer", "input
 /// Further apart, two columns are no one row.
 const SHIFT_S: Limits = Limits::within(-10.0, 10.0);
 
-pub(super) fn read(root: &Table, links: &[Link], joints: &[Joint]) -> Result<LogColumns> {
+pub(super) fn read(
+    root: &Table,
+    links: &[Link],
+    joints: &[Joint],
+    robot: Option<&Robot>,
+) -> Result<LogColumns> {
     let log = root.required_table("log")?;
     log.only(&[
         "time",
@@ -38,25 +43,30 @@ pub(super) fn read(root: &Table, links: &[Link], joints: &[Joint]) -> Result<Log
     ])?;
     let name = |key: &str| -> Result<_> { Ok(log.text(key)?.map(str::to_string)) };
     let payload = log.table("payload")?;
-    if payload.is_some() && links.is_empty() {
-        return Err(log.bad_key(
-            "payload",
-            "a robot in space has no payload column yet",
-            "remove it; put the mass into a link of the robot's file",
-        ));
-    }
-    let at_m = payload.map(|table| table.required_number("at_m", EITHER_SIGN));
+    let (at_m, on) = match (&payload, robot) {
+        (None, _) => (0.0, None),
+        (Some(table), None) if table.has("link") => {
+            return Err(table.bad_key(
+                "link",
+                "a planar chain carries its payload on the last link",
+                "remove it; `at_m` is the distance from the last joint",
+            ));
+        }
+        (Some(table), None) => (table.required_number("at_m", EITHER_SIGN)?, None),
+        (Some(table), Some(robot)) => (0.0, Some(place_on(table, robot)?)),
+    };
     Ok(LogColumns {
         time: column(&log.required_table("time")?, "time", Dimension::Time)?,
         segment: name("segment")?,
         supply: optional(&log, "supply", Dimension::Voltage)?,
         torque_on: name("torque_on")?,
-        payload_at_m: at_m.transpose()?.unwrap_or(0.0),
+        payload_at_m: at_m,
+        payload_on: on,
         payload: optional(&log, "payload", Dimension::Mass)?,
         turned: name("turned")?,
         joints: joint_columns(&log, joints)?,
         arm: match links {
-            [link] => Some(ArmFigures {
+            [link] if robot.is_none() => Some(ArmFigures {
                 mass_kg: link.mass_kg,
                 com_m: link.com_m,
             }),
@@ -64,6 +74,34 @@ pub(super) fn read(root: &Table, links: &[Link], joints: &[Joint]) -> Result<Log
         },
         split_at_gap_s: log.number("split_at_gap_s", ABOVE_ZERO)?,
     })
+}
+
+/// Where a payload sits on a robot in space.
+fn place_on(payload: &Table, robot: &Robot) -> Result<LinkPlace> {
+    let name = payload.required_text("link")?;
+    let link = robot.links.iter().position(|link| link == name);
+    let link = link.ok_or_else(|| {
+        payload.bad(
+            "link",
+            format!("the robot has no link `{name}`"),
+            format!("name one of: {}", robot.links.join(", ")),
+        )
+    })?;
+    let rows = payload.rows("at_m")?;
+    let rows = payload.required("at_m", rows)?;
+    let at_m = match rows.as_slice() {
+        [row] => <[f64; 3]>::try_from(row.as_slice()).ok(),
+        _ => None,
+    };
+    let at_m = at_m.filter(|at_m| at_m.iter().all(|m| EITHER_SIGN.allow(*m)));
+    let at_m = at_m.ok_or_else(|| {
+        payload.bad(
+            "at_m",
+            "no place in the link's frame",
+            "write three distances, m: at_m = [0.0, 0.0, -0.08]",
+        )
+    })?;
+    Ok(LinkPlace { link, at_m })
 }
 
 fn joint_columns(log: &Table, joints: &[Joint]) -> Result<Vec<JointColumns>> {
@@ -216,7 +254,7 @@ fn column(table: &Table, quantity: &'static str, dimension: Dimension) -> Result
     let scale_key = |unit| Unit::scale_key(unit, dimension);
     known.extend(table.text("unit")?.and_then(scale_key));
     if quantity == "payload" {
-        known.push("at_m");
+        known.extend(["at_m", "link"]);
     }
     table.only(&known)?;
     let unit = unit(table, quantity, dimension)?;

@@ -160,7 +160,7 @@ fn what_makes_no_robot_is_refused_with_the_remedy() {
                 "[log]",
                 "[log]\npayload = { column = \"m\", unit = \"kg\", at_m = 0.1 }",
             ),
-            "no payload",
+            "lacks `link`",
         ),
         (effect("base_tilt"), "a robot in space"),
         (
@@ -303,5 +303,29 @@ fn a_moment_below_0_about_its_own_axis_is_refused_in_the_robots_file() {
         "products",
     ] {
         assert!(found.contains(told), "{told}: {found}");
+    }
+}
+
+#[test]
+fn a_payload_sits_at_a_place_of_a_link() {
+    let (_folder, file) = folder();
+    let with = |rest: &str| {
+        let payload = format!("[log]\npayload = {{ column = \"m\", unit = \"kg\", {rest} }}");
+        MODEL.replace("[log]", &payload)
+    };
+    let model = Model::parse(&with("link = \"boom\", at_m = [0.6, 0, -0.1]"), &file).unwrap();
+    let place = model.log.payload_on.unwrap();
+    assert_eq!((place.link, place.at_m), (1, [0.6, 0.0, -0.1]));
+    let mass_kg =
+        |payload_kg: f64| model.rig_with(false, payload_kg).tree.unwrap().links[1].mass_kg;
+    assert_eq!([mass_kg(0.0), mass_kg(0.25)], [1.0, 1.25]);
+    for (rest, wanted) in [
+        ("link = \"jib\", at_m = [0, 0, 0]", "mast, boom, cart"),
+        ("link = \"boom\", at_m = [0, 0]", "three distances"),
+        ("link = \"boom\", at_m = [0, 0, 1e9]", "three distances"),
+        ("link = \"boom\"", "at_m"),
+    ] {
+        let found = refused(&with(rest), &file);
+        assert!(found.contains(wanted), "{rest}: {found}");
     }
 }

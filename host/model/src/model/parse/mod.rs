@@ -84,12 +84,7 @@ pub(super) fn model_of(text: &str, file: &Path, robot: Option<&str>) -> Result<M
     };
     let laws = expressions::read(&root)?;
     let effects = effects::read(&root, &joints, &laws, robot.as_ref())?;
-    let planar = if robot.is_some() {
-        &[]
-    } else {
-        links.as_slice()
-    };
-    let log = columns::read(&root, planar, &joints)?;
+    let log = columns::read(&root, &links, &joints, robot.as_ref())?;
     let (angle_zero, gravity_m_s2) = match &robot {
         None => (
             rig.required("angle_zero", rig.choice("angle_zero", &ANGLE_ZERO)?)?,

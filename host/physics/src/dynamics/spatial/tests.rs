@@ -258,3 +258,34 @@ fn the_closed_form_is_that_of_newton_and_euler() {
         assert_eq!(slope, slope.transpose());
     }
 }
+
+/// Energy with a point mass is the energy without it and the point's own.
+#[test]
+fn a_mass_bolted_on_moves_and_falls_with_its_link() {
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    for _ in 0..50 {
+        let tree = tree(&mut random);
+        let n = tree.len();
+        let (link, mass_kg) = (random.random_range(0..n), random.random_range(0.1..2.0));
+        let at_m = vector(&mut random, 0.3);
+        let (angle, speed) = (numbers(&mut random, n, 3.0), numbers(&mut random, n, 2.0));
+        let mut loaded = tree.clone();
+        loaded.bolt_on(link, mass_kg, at_m);
+        let place = |later_s: f64| {
+            let moved = angle.iter().zip(&speed).map(|(q, dq)| q + later_s * dq);
+            tree.poses(&moved.collect::<Vec<_>>())[link] * nalgebra::Point3::from(at_m)
+        };
+        let velocity = (place(1e-5) - place(-1e-5)) / 2e-5;
+        let own = (
+            0.5 * mass_kg * velocity.norm_squared(),
+            -mass_kg * tree.gravity_m_s2.dot(&place(0.0).coords),
+        );
+        let (before, after) = (
+            tree.energy_j(&angle, &speed),
+            loaded.energy_j(&angle, &speed),
+        );
+        let scale = 1.0 + after.0.abs() + after.1.abs();
+        assert!((after.0 - before.0 - own.0).abs() < 1e-7 * scale);
+        assert!((after.1 - before.1 - own.1).abs() < 1e-12 * scale);
+    }
+}
