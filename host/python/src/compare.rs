@@ -69,6 +69,7 @@ pub fn compare(
             comparisons: vec![comparison],
             diagnosis: None,
             provenance: ReportProvenance::new(vec![model.file()], &split, "handstand.compare"),
+            names: JointNames::of(&model.inner),
         };
         Comparison {
             report,

@@ -223,6 +223,7 @@ impl Diagnosis {
                 &self.split,
                 "handstand.diagnose",
             ),
+            names: JointNames::of(&self.model.inner),
         }
     }
 }

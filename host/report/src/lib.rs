@@ -68,6 +68,7 @@ use handstand_fit::{compare, fitting};
 
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
+use crate::model::JointNames;
 use crate::motion::{Motion, Split};
 use crate::output::number::hex;
 use crate::plot::Tone;
@@ -94,6 +95,9 @@ pub struct Report {
     pub diagnosis: Option<Diagnosis>,
     /// What the report was made from.
     pub provenance: ReportProvenance,
+    /// What joints and links are called on the page.
+    #[serde(skip)]
+    pub names: JointNames,
 }
 
 /// What a report was made from and by.

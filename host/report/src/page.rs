@@ -4,6 +4,7 @@ use super::{
     Report, candidates, closed_loop, failures, headline, parameters, provenance, remains,
     signatures, traces, waterfall,
 };
+use crate::model::JointNames;
 use crate::plot;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -45,8 +46,33 @@ pub fn html_with(report: &Report, above: Vec<Section>) -> String {
         provenance::terms,
     ];
     let own = parts.iter().filter_map(|part| part(report));
-    let sections: Vec<Section> = above.into_iter().chain(own).collect();
-    document(&report.title, &headline::header(report), &sections)
+    let named = above.into_iter().chain(own).map(|section| Section {
+        body: with_names(&section.body, &report.names),
+        ..section
+    });
+    let sections: Vec<Section> = named.collect();
+    let header = with_names(&headline::header(report), &report.names);
+    document(&report.title, &header, &sections)
+}
+
+/// Begins what a screen reader says of an element.
+const LABEL: &str = "aria-label=\"";
+
+/// A part of the page with names in what one reads or hears of it; other attributes, as commands to
+/// copy, keep their numbers.
+fn with_names(part: &Markup, names: &JointNames) -> Markup {
+    let mut named = String::with_capacity(part.0.len());
+    for piece in part.0.split_inclusive('>') {
+        let (text, tag) = piece.split_at(piece.find('<').unwrap_or(piece.len()));
+        named += &names.in_text(text);
+        let label = tag.find(LABEL).map_or(tag.len(), |at| at + LABEL.len());
+        let (before, label) = tag.split_at(label);
+        let (label, behind) = label.split_at(label.find('"').unwrap_or(0));
+        named += before;
+        named += &names.in_text(label);
+        named += behind;
+    }
+    PreEscaped(named)
 }
 
 /// A document of sections, with links to them.

@@ -94,6 +94,7 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<ExitStatus> {
         comparisons,
         diagnosis: None,
         provenance: page::provenance(&files, &split, console)?,
+        names,
     };
     console.result(&json(&report), || text)?;
     args.page.write(|| Ok(html(&report)), console)?;

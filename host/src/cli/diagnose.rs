@@ -116,6 +116,7 @@ pub fn find(args: &DiagnoseArgs, console: &Console) -> Result<Diagnosis> {
             comparisons: compared.comparisons(diagnosis.horizon_s, args),
             diagnosis: Some(diagnosis.clone()),
             provenance: page::provenance(&[&args.model], &split, console)?,
+            names: JointNames::of(&model),
         }))
     };
     args.page.write(page, console)?;

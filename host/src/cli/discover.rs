@@ -177,6 +177,7 @@ fn report(found: &LogDiscovery, args: &DiscoverArgs, console: &Console) -> Resul
         comparisons: compare_all(named, args.judging.run.horizon.or(judged_over)),
         diagnosis: Some(diagnosis.clone()),
         provenance: page::provenance(&[&args.model], &found.split, console)?,
+        names: JointNames::of(model),
     };
     let law = law_section(&found.discovery, &JointNames::of(model));
     Ok(html_with(&report, law.into_iter().collect()))

@@ -53,6 +53,13 @@ fn commands_take_and_print_the_names_of_links_and_joints() {
     let at = folder.path();
     let text = named(at, &["compare", "crane.toml", "c.csv"]);
     assert!(text.contains("| joint luff: rms, mrad"), "{text}");
+    let report = ["compare", "crane.toml", "c.csv", "--report", "page.html"];
+    run(at, &report);
+    let page = std::fs::read_to_string(at.join("page.html")).unwrap();
+    assert!(page.contains(">joint luff"), "{page}");
+    assert!(page.contains(r#"aria-label="motion c.csv, joint luff""#));
+    let numbered = ["joint 2", "Joint 2"].map(|numbered| page.find(numbered));
+    assert_eq!(numbered, [None, None], "{page}");
     let widths: Vec<usize> = (text.lines())
         .filter(|line| line.starts_with('|'))
         .map(|line| line.chars().count())

@@ -1,6 +1,7 @@
 //! What a person takes along: the model, the report, the next motion, the session.
 
 use super::{blocking, session};
+use crate::model::JointNames;
 use crate::motion::Split;
 use crate::pages::report as pages;
 use crate::reply::{Answer, LabError, download as file};
@@ -53,10 +54,12 @@ fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError
     let mut comparisons = Vec::new();
     let mut model_files = Vec::new();
     let mut split = Split::default();
+    let mut names = JointNames::default();
     for step in 0..=saved.current {
         let evaluation = session.evaluation(saved, step)?;
         let evaluation = evaluation.ok_or(LabError::NotFound("comparison"))?;
         comparisons.push(evaluation.comparison().clone());
+        names = JointNames::of(&evaluation.run.model);
         let text = saved.steps[step].toml.as_bytes();
         model_files.push(HashedModel::of(format!("model-{step}.toml"), text));
         split = Split::default();
@@ -74,6 +77,7 @@ fn report(session: &LabSession, saved: &SavedSession) -> Result<String, LabError
         comparisons,
         diagnosis: None,
         provenance: ReportProvenance::new(model_files, &split, saved.compare_command()),
+        names,
     };
     Ok(html_with(&report, pages::sections(saved)))
 }

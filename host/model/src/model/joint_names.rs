@@ -76,25 +76,31 @@ impl JointNames {
         if in_word || before.is_some_and(|letter| "_@.-/".contains(letter)) {
             return None;
         }
-        [("joint", &self.joints), ("link", &self.links)]
-            .into_iter()
-            .find_map(|(what, names)| {
-                let behind = text.strip_prefix(what)?;
-                let (number, length) = counted(behind.trim_start_matches(' '))?;
-                let blanks = behind.len() - behind.trim_start_matches(' ').len();
-                let name = named(names, number)?;
-                let tail = &behind[blanks + length..];
-                let is_key = tail.strip_prefix('.').is_some_and(is_key);
-                let joined = match blanks {
-                    0 if is_key => ".",
-                    1 if !tail.starts_with(char::is_alphanumeric) => " ",
-                    _ => return None,
-                };
-                Some((
-                    format!("{what}{joined}{name}"),
-                    what.len() + blanks + length,
-                ))
-            })
+        let (joints, links) = (&self.joints, &self.links);
+        [
+            ("joint", joints),
+            ("Joint", joints),
+            ("link", links),
+            ("Link", links),
+        ]
+        .into_iter()
+        .find_map(|(what, names)| {
+            let behind = text.strip_prefix(what)?;
+            let (number, length) = counted(behind.trim_start_matches(' '))?;
+            let blanks = behind.len() - behind.trim_start_matches(' ').len();
+            let name = named(names, number)?;
+            let tail = &behind[blanks + length..];
+            let is_key = tail.strip_prefix('.').is_some_and(is_key);
+            let joined = match blanks {
+                0 if is_key => ".",
+                1 if !tail.starts_with(char::is_alphanumeric) => " ",
+                _ => return None,
+            };
+            Some((
+                format!("{what}{joined}{name}"),
+                what.len() + blanks + length,
+            ))
+        })
     }
 }
 
@@ -138,6 +144,7 @@ mod tests {
         for (text, wanted) in [
             ("joint 2: rms", "joint joint1: rms"),
             ("of joint 1.", "of joint pan."),
+            ("Joint 1, fast", "Joint pan, fast"),
             ("(link1.mass_kg)", "(link.base_link.mass_kg)"),
             (
                 "--free joint1.gain_per_rad,",

@@ -9,7 +9,7 @@ use crate::diagnose::{
     ResidualStructure, RuledOut, SearchEnded, Verdict, WrongValue,
 };
 use crate::fitting::{ErrorReduction, FittedValue};
-use crate::model::MeasuredSignal;
+use crate::model::{JointNames, MeasuredSignal};
 use crate::{HashedModel, LogFile, Report, ReportProvenance};
 
 pub(crate) fn report() -> Report {
@@ -38,6 +38,7 @@ pub(crate) fn report() -> Report {
             logs: vec![log("swing.csv", false), log("sines.csv", true)],
             command: "handstand diagnose ideal.toml swing.csv sines.csv --html report.html".into(),
         },
+        names: JointNames::default(),
     }
 }
 
