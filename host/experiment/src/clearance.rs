@@ -1,5 +1,6 @@
 //! How near the links of a robot in space come to each other and to the plane that it stands on.
 
+use crate::dynamics::{SpatialLink, SpatialTree};
 use crate::model::Model;
 use crate::motion::Motion;
 use crate::sim::Plant;
@@ -30,6 +31,9 @@ struct CentreLines {
     ends: Vec<Point3<f64>>,
 }
 
+/// Sine of the angle by which an axis may be off the vertical and still be upright.
+const UPRIGHT: f64 = 0.02;
+
 /// A line between two points.
 type Line = [Point3<f64>; 2];
 
@@ -39,24 +43,15 @@ impl Clearance {
     pub fn of_logs(model: &Model, motions: &[Motion]) -> Option<Clearance> {
         let tree = model.tree()?;
         let links = 0..tree.len();
-        let radii_m: Vec<f64> = (tree.links.iter())
-            .map(|link| {
-                let least = link.inertia_kg_m2.symmetric_eigenvalues().min().max(0.0);
-                if link.mass_kg > 0.0 {
-                    (2.0 * least / link.mass_kg).sqrt()
-                } else {
-                    0.0
-                }
-            })
-            .collect();
-        let lines = links.clone().map(|link| {
-            let children = tree.links.iter().filter(|next| next.parent == Some(link));
-            let joints = children.map(|next| Point3::from(next.place.translation.vector));
-            let mut ends: Vec<Point3<f64>> = joints.collect();
-            // What ends with no joint reaches as far beyond its centre of mass.
-            let beyond = if ends.is_empty() { 2.0 } else { 1.0 };
-            ends.push(Point3::from(beyond * tree.links[link].com_m));
-            CentreLines { ends }
+        let up = (-tree.gravity_m_s2).try_normalize(0.0);
+        let radii_m: Vec<f64> = tree.links.iter().map(radius_m).collect();
+        let above = tree.links.iter().zip(&radii_m);
+        let above_m = above.map(|(link, radius_m)| {
+            if stays_level(link, up) {
+                f64::NEG_INFINITY
+            } else {
+                *radius_m
+            }
         });
         // Two links with a short one between them are near in every pose.
         let are_near = |a: usize, b: usize| {
@@ -70,12 +65,15 @@ impl Clearance {
             .flat_map(|b| (0..b).map(move |a| (a, b)))
             .filter(|&(a, b)| !are_near(a, b));
         let mut clearance = Clearance {
-            lines: lines.collect(),
-            up: (-tree.gravity_m_s2).try_normalize(0.0),
+            lines: links
+                .clone()
+                .map(|link| CentreLines::of(&tree, link))
+                .collect(),
+            up,
             apart_m: pairs
                 .map(|(a, b)| ((a, b), radii_m[a] + radii_m[b]))
                 .collect(),
-            above_m: radii_m,
+            above_m: above_m.collect(),
             ranges_rad: model
                 .robot
                 .as_ref()
@@ -141,6 +139,35 @@ impl Clearance {
         });
         placed.collect()
     }
+}
+
+impl CentreLines {
+    fn of(tree: &SpatialTree, link: usize) -> CentreLines {
+        let children = tree.links.iter().filter(|next| next.parent == Some(link));
+        let joints = children.map(|next| Point3::from(next.place.translation.vector));
+        let mut ends: Vec<Point3<f64>> = joints.collect();
+        // What ends with no joint reaches as far beyond its centre of mass.
+        let beyond = if ends.is_empty() { 2.0 } else { 1.0 };
+        ends.push(Point3::from(beyond * tree.links[link].com_m));
+        CentreLines { ends }
+    }
+}
+
+/// Radius of the solid cylinder whose moment about its axis is the link's least, m.
+fn radius_m(link: &SpatialLink) -> f64 {
+    let least_kg_m2 = link.inertia_kg_m2.symmetric_eigenvalues().min().max(0.0);
+    if link.mass_kg > 0.0 {
+        (2.0 * least_kg_m2 / link.mass_kg).sqrt()
+    } else {
+        0.0
+    }
+}
+
+/// Whether a link of the base turns about the vertical, and so comes no lower than it stands.
+fn stays_level(link: &SpatialLink, up: Option<Vector3<f64>>) -> bool {
+    let axis = link.place * link.axis.into_inner();
+    let is_upright = up.is_some_and(|up| axis.cross(&up).norm() < UPRIGHT);
+    link.parent.is_none() && !link.slides && is_upright
 }
 
 fn is_beyond(range: Option<(f64, f64)>, angle: f64) -> bool {

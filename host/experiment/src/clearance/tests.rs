@@ -81,6 +81,20 @@ fn a_robot_stays_above_the_plane_that_it_stands_on_or_where_its_logs_were() {
 }
 
 #[test]
+fn what_turns_about_the_vertical_comes_no_lower() {
+    let axis = nalgebra::Unit::new_normalize;
+    let tree = arm().tree().unwrap();
+    let up = Some(Vector3::z());
+    let mut link = tree.links[0].clone();
+    assert!(!stays_level(&link, up));
+    link.axis = axis(Vector3::new(0.01, 0.0, -1.0));
+    assert!(stays_level(&link, up) && !stays_level(&link, None));
+    let mut carried = link.clone();
+    carried.parent = Some(0);
+    assert!(!stays_level(&carried, up));
+}
+
+#[test]
 fn a_finger_stays_clear_of_the_upper_arm_or_as_near_as_in_the_logs() {
     // Folded back, the finger's line would cross the upper arm's.
     let folded = [-0.5, -2.6, -2.3];
