@@ -70,8 +70,12 @@ pub fn first_motions(
 }
 
 fn remedy(model: &Model) -> String {
-    let clear = "give ranges about a pose that is clear by --angles, one for each joint, another \
-                 --speed, or where the floor is by --floor";
+    let clear = if model.is_in_space() {
+        "give ranges about a pose that is clear by --angles, one for each joint, another --speed, \
+         or where the floor is by --floor"
+    } else {
+        "give other ranges by --angles, another --speed, or fewer kinds by --motions"
+    };
     let mut drives = model.joints.iter().map(|joint| &joint.drive);
     // Torques that were found with a regulator play without one, and small errors grow.
     let takes_torque = |drive: &Drive| matches!(drive, Drive::Torque | Drive::Duty(_));

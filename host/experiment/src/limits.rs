@@ -60,25 +60,37 @@ impl ExperimentLimits {
         }
     }
 
-    /// What a model's file knows without a log: the end stops of a robot in space, `reach_rad` to
-    /// either side of 0 where it has none; and this speed, rad/s, up to what the motors have.
+    /// What a model's file knows without a log: the end stops of a robot in space, for driven
+    /// joints without any `reach_rad` to either side of 0 in the log's convention, nothing for
+    /// others; and this speed, rad/s, up to what the motors have.
     pub fn of_model(
         model: &Model,
         (reach_rad, speed_rad_s): (f64, f64),
         hz: f64,
     ) -> ExperimentLimits {
-        let ranges = (0..model.link_count())
-            .map(|joint| model.range(joint).unwrap_or((-reach_rad, reach_rad)));
-        let (low_rad, high_rad): (Vec<f64>, Vec<f64>) = ranges.unzip();
-        let fastest = model.joints.iter().map(|joint| {
-            let motor = joint.drive.motor();
-            motor.map_or(speed_rad_s, |motor| {
-                speed_rad_s.min(motor.no_load_speed_rad_s)
-            })
+        let stops = |side: fn((f64, f64)) -> f64| {
+            let stops = (0..model.link_count()).map(|joint| model.range(joint).map_or(0.0, side));
+            model.convention_rad(&stops.collect::<Vec<_>>())
+        };
+        let (lowest_rad, highest_rad) = (stops(|range| range.0), stops(|range| range.1));
+        let ranges = model.joints.iter().enumerate().map(|(joint, own)| {
+            if model.range(joint).is_some() {
+                (lowest_rad[joint], highest_rad[joint])
+            } else if own.drive.is_driven() {
+                (-reach_rad, reach_rad)
+            } else {
+                (f64::NEG_INFINITY, f64::INFINITY)
+            }
+        });
+        let (low_rad, high_rad) = ranges.unzip();
+        let fastest = model.joints.iter().map(|joint| match joint.drive.motor() {
+            _ if !joint.drive.is_driven() => f64::INFINITY,
+            Some(motor) => speed_rad_s.min(motor.no_load_speed_rad_s),
+            None => speed_rad_s,
         });
         ExperimentLimits {
-            low_rad: model.convention_rad(&low_rad),
-            high_rad: model.convention_rad(&high_rad),
+            low_rad,
+            high_rad,
             speed_rad_s: fastest.collect(),
             torque_nm: None,
             seconds: f64::INFINITY,

@@ -201,3 +201,16 @@ fn no_explanation_leaves_the_limits() {
         Err(error) => assert_eq!(error.exit_code(), 2),
     }
 }
+
+#[test]
+fn without_logs_driven_joints_move_about_the_log_s_zero_and_others_as_they_may() {
+    let upright = ARM.replace("angle_zero = \"hanging\"", "angle_zero = \"upright\"");
+    let model = Model::parse(&upright, Path::new("arm.toml")).unwrap();
+    let limits = ExperimentLimits::of_model(&model, (0.5, 2.0), 100.0);
+    assert_eq!((limits.low_rad[0], limits.high_rad[0]), (-0.5, 0.5));
+    let mut passive = model;
+    passive.joints[0].drive = handstand_model::model::Drive::Passive;
+    let limits = ExperimentLimits::of_model(&passive, (0.5, 2.0), 100.0);
+    let freely = (f64::NEG_INFINITY, f64::INFINITY);
+    assert_eq!((limits.low_rad[0], limits.speed_rad_s[0]), freely);
+}

@@ -110,13 +110,11 @@ fn own_columns(table: &LogTable, split_at_gap_s: Option<f64>) -> LogColumns {
     };
     let has = |name: &&str| table.names.iter().any(|own| own == name);
     let mean = |name: &str| Some(column(name, Dimension::Angle).into());
-    let speed = Some(SPEED).filter(has);
+    let [speed, supply] = [SPEED, SUPPLY].map(|name| Some(name).filter(has));
     LogColumns {
         time: column(TIME, Dimension::Time),
         segment: None,
-        supply: Some(SUPPLY)
-            .filter(has)
-            .map(|name| column(name, Dimension::Voltage)),
+        supply: supply.map(|name| column(name, Dimension::Voltage)),
         torque_on: Some(TORQUE_ON).filter(has).map(str::to_string),
         payload: Some(column(PAYLOAD, Dimension::Mass)),
         payload_at_m: 0.0,

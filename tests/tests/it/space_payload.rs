@@ -15,7 +15,8 @@ fn a_log_with_a_payload_is_followed_where_the_log_says_so() {
     let file = at.join("crane.toml");
     let text = std::fs::read_to_string(&file).unwrap();
     let payload = format!(
-        "[log]\npayload = {{ column = \"tool_kg\", unit = \"kg\", link = \"head\", at_m = {AT_M:?} }}"
+        "[log]\npayload = {{ column = \"tool_kg\", unit = \"kg\", link = \"head\", \
+         at_m = {AT_M:?} }}"
     );
     let friction = "[[effect]]\nkind = \"viscous\"\njoint = 2\ncoefficient_nm_s_rad = 0.06\n\n";
     let text = text.replace("[log]", &[friction, &payload].concat());
@@ -58,8 +59,8 @@ fn a_log_with_a_payload_is_followed_where_the_log_says_so() {
     ];
     let (data, _) = run(at, &next);
     let simulated = data["proposal"]["simulated"].as_u64().unwrap();
-    let resting = [&next[..8], &["0", "--json"]].concat();
-    let (data, _) = run(at, &resting);
+    let unloaded = [&next[..8], &["0", "--json"]].concat();
+    let (data, _) = run(at, &unloaded);
     assert_eq!(
         data["proposal"]["simulated"].as_u64().unwrap() * 2,
         simulated
