@@ -4,7 +4,7 @@
 use super::levenberg_marquardt::LevenbergMarquardt;
 use super::motion_start::MotionStart;
 use super::normal::WindowJacobian;
-use super::residual::motion_residuals;
+use super::residual::{motion_residuals, motion_residuals_beside};
 use crate::model::ParameterPath;
 use crate::sim::HiddenQuantity;
 use nalgebra::{DMatrix, DVector};
@@ -178,7 +178,8 @@ impl LevenbergMarquardt<'_> {
             deltas.push(delta(*value));
             *value += delta(*value);
         }
-        let shifted = motion_residuals(&fit.model, self.data, &window_starts, motion);
+        let (model, known) = (&fit.model, &fit.residuals);
+        let shifted = motion_residuals_beside(model, self.data, &window_starts, motion, known);
         (deltas, shifted)
     }
 }

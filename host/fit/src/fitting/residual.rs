@@ -3,8 +3,9 @@
 use super::data::FitProblem;
 use super::window_start::WindowStart;
 use crate::model::{MeasuredSignal, Model};
-use crate::sim::{Plant, PlantMemory, predict};
+use crate::sim::{KnownRun, Plant, PlantMemory, predict, predict_beside};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Weighted residuals, (measured - predicted) / sigma; one vector per window, signal after signal.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,7 +167,63 @@ pub(super) fn motion_residuals(
     window_starts: &[WindowStart],
     motion: usize,
 ) -> Vec<Vec<f64>> {
-    let mut windows = predicted(model, data, window_starts, motion);
+    let predicted = predicted(model, data, window_starts, motion);
+    weighted_windows(predicted, data, motion)
+}
+
+/// The same from starts next to those that left residuals which are known: as those are where the
+/// start no longer shows.
+pub(super) fn motion_residuals_beside(
+    model: &Model,
+    data: &FitProblem,
+    window_starts: &[WindowStart],
+    motion: usize,
+    known: &Residuals,
+) -> Vec<Vec<f64>> {
+    let log = &data.motions[motion];
+    let plant = Plant::new(model, log);
+    if !plant.is_told_by_readings() {
+        return motion_residuals(model, data, window_starts, motion);
+    }
+    data.halt().begin_run();
+    let near: Vec<f64> = data.sigma.iter().map(|sigma| MET * sigma).collect();
+    let windows = data.windows_of(motion).map(|(index, window)| {
+        let samples = window.samples.clone();
+        let start = window_starts[index].start(&plant);
+        let known = KnownRun {
+            readings: &read_back(&known.windows[index], data, motion, samples.clone()),
+            near: &near,
+        };
+        let mut readings = vec![0.0; samples.len() * plant.signals()];
+        predict_beside(&plant, log, samples, &start, &known, &mut readings);
+        readings
+    });
+    weighted_windows(windows.collect(), data, motion)
+}
+
+/// Readings that differ by no more than this share of the noise have met: a thousandth of the least
+/// difference of a start.
+const MET: f64 = 1e-4;
+
+/// The predictions that left these residuals in a window; not a number where nothing was measured.
+fn read_back(
+    residuals: &[f64],
+    data: &FitProblem,
+    motion: usize,
+    samples: Range<usize>,
+) -> Vec<f64> {
+    let signals = residuals.chunks(samples.len()).enumerate();
+    let predicted = signals.flat_map(|(signal, residuals)| {
+        let measured = &data.measured(motion, signal)[samples.clone()];
+        let sigma = data.sigma[signal];
+        let read = residuals.iter().zip(measured);
+        read.map(move |(residual, measured)| measured - residual * sigma)
+    });
+    predicted.collect()
+}
+
+/// What is left of these predictions of one motion's windows.
+fn weighted_windows(mut windows: Vec<Vec<f64>>, data: &FitProblem, motion: usize) -> Vec<Vec<f64>> {
     for (values, (_, window)) in windows.iter_mut().zip(data.windows_of(motion)) {
         for (signal, part) in values.chunks_mut(window.samples.len()).enumerate() {
             let measured = &data.measured(motion, signal)[window.samples.clone()];

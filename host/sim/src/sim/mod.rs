@@ -24,4 +24,4 @@ pub use hidden::{HiddenQuantity, HiddenUnknown};
 pub use live::{Live, bare_motors};
 pub use memory::PlantMemory;
 pub use plant::Plant;
-pub use run::{StartState, predict};
+pub use run::{KnownRun, StartState, predict, predict_beside};

@@ -147,6 +147,13 @@ impl Plant {
         }
     }
 
+    /// Whether two runs whose readings have become the same stay so: each reading is that of an
+    /// angle in its own row, nothing else is remembered, and nothing hidden where they begin.
+    pub fn is_told_by_readings(&self) -> bool {
+        let remembers = self.remembers > 0 || self.senses || !self.hidden.is_empty();
+        !remembers && !self.has_offsets && !self.rates.contains(&true)
+    }
+
     /// Compiles `model` for a simulation without a log: no payload, not turned.
     pub fn without_log(model: &Model) -> Plant {
         let angles = vec![false; model.link_count()];

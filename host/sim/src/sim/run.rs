@@ -1,6 +1,9 @@
 //! Simulation along a stretch of a motion: predicted encoder readings at every sample.
 
+mod beside;
 mod time_offset;
+
+pub use beside::KnownRun;
 
 use super::drive::DriveInput;
 use super::input::{held_mean, share_before};
@@ -56,6 +59,26 @@ pub fn predict(
         2 => predicted::<FixedRows<2>>(plant, motion, stretch, start, memory, readings),
         3 => predicted::<FixedRows<3>>(plant, motion, stretch, start, memory, readings),
         _ => predicted::<DynamicRows>(plant, motion, stretch, start, memory, readings),
+    }
+}
+
+/// The same from a start near that of a run that is known, as far as they differ: once its readings
+/// have come to those of the other, the rest is that one's.
+///
+/// Of a plant that [is told by its readings](Plant::is_told_by_readings) alone.
+pub fn predict_beside(
+    plant: &Plant,
+    motion: &Motion,
+    stretch: Range<usize>,
+    start: &StartState,
+    known: &KnownRun,
+    readings: &mut [f64],
+) {
+    match plant.len() {
+        1 => beside::predicted::<FixedRows<1>>(plant, motion, stretch, start, known, readings),
+        2 => beside::predicted::<FixedRows<2>>(plant, motion, stretch, start, known, readings),
+        3 => beside::predicted::<FixedRows<3>>(plant, motion, stretch, start, known, readings),
+        _ => beside::predicted::<DynamicRows>(plant, motion, stretch, start, known, readings),
     }
 }
 
