@@ -111,22 +111,29 @@ impl Clearance {
 
     /// What of it a motion of the model does not keep, in words that read on from "the model".
     /// Samples at which not every joint's angle is known say nothing.
-    pub fn broken_by(&self, model: &Model, motion: &Motion) -> Option<&'static str> {
+    pub fn broken_by(&self, model: &Model, motion: &Motion) -> Option<String> {
         let tree = model.tree()?;
         let plant = Plant::new(model, motion);
         coordinates(&plant, motion).find_map(|angle_rad| {
             let lines = self.lines_at(&tree.poses(&angle_rad));
             let mut ranges = self.ranges_rad.iter().zip(&angle_rad);
+            let beyond = ranges.position(|(range, angle)| is_beyond(*range, *angle));
             let mut apart = self.apart_m.iter();
+            let near = apart.find(|((a, b), least)| nearest_m(&lines[*a], &lines[*b]) < *least);
             let mut above = self.above_m.iter().zip(&lines);
-            if ranges.any(|(range, angle)| is_beyond(*range, *angle)) {
-                Some("turns a joint beyond its end stop")
-            } else if apart.any(|((a, b), least)| nearest_m(&lines[*a], &lines[*b]) < *least) {
-                Some("brings two links too near to each other")
-            } else if above.any(|(least, lines)| height_m(lines, self.up) < *least) {
-                Some("dips a link into the plane that it stands on")
+            let low = above.position(|(least, lines)| height_m(lines, self.up) < *least);
+            let link = |link: usize| {
+                let robot = model.robot.as_ref();
+                robot.map_or("a link", |robot| robot.links[link].as_str())
+            };
+            if let Some(joint) = beyond {
+                let joint = model.joint_name(joint).unwrap_or("a joint");
+                Some(format!("turns {joint} beyond its end stop"))
+            } else if let Some(((a, b), _)) = near {
+                let (a, b) = (link(*a), link(*b));
+                Some(format!("brings {a} and {b} too near to each other"))
             } else {
-                None
+                low.map(|at| format!("dips {} into the plane that it stands on", link(at)))
             }
         })
     }

@@ -38,6 +38,7 @@ pub fn first_motions(
 ) -> Result<FirstMotions> {
     can_be_moved(model)?;
     limits.check(model)?;
+    let allowed = limits.catching_up(model);
     let mut refused = None;
     for width in WIDTHS {
         let mut planned = plan(model, limits, width, kinds.to_vec(), seed);
@@ -51,7 +52,7 @@ pub fn first_motions(
         };
         let asked = experiment(model, (width, &excitation), Condition::default(), limits);
         let motion = predicted_motion(model, &asked);
-        let Some(broken) = limits.broken_by(model, &motion) else {
+        let Some(broken) = allowed.broken_by(model, &motion) else {
             return Ok(FirstMotions {
                 excitation,
                 width,

@@ -10,6 +10,8 @@ use std::f64::consts::PI;
 const SPEED_SAMPLES: usize = 4;
 /// How far the others may push a joint that rests, rad: three degrees.
 const PUSHED_RAD: f64 = 0.05;
+/// How much faster than its goal a servo catches up with it.
+const CATCHING_UP: f64 = 2.0;
 /// Slowest and fastest sampling of an experiment, Hz.
 const RATE_HZ: (f64, f64) = (10.0, 1000.0);
 
@@ -124,6 +126,20 @@ impl ExperimentLimits {
         Ok(())
     }
 
+    /// The same of joints that may catch up with goals as fast as these change: a servo lags behind
+    /// its goal, and swings past it.
+    pub(super) fn catching_up(&self, model: &Model) -> ExperimentLimits {
+        let joints = self.speed_rad_s.iter().zip(&model.joints);
+        let speeds = joints.map(|(speed_rad_s, joint)| match joint.drive {
+            Drive::Position { .. } => CATCHING_UP * speed_rad_s,
+            _ => *speed_rad_s,
+        });
+        ExperimentLimits {
+            speed_rad_s: speeds.collect(),
+            ..self.clone()
+        }
+    }
+
     /// The driven joints that may move, counted from 0.
     pub(super) fn moved(&self, model: &Model) -> Vec<usize> {
         let mut driven = model.driven_joints();
@@ -137,15 +153,23 @@ impl ExperimentLimits {
     }
 
     /// Which of them a predicted motion leaves, in words that read on from "the model".
-    pub fn broken_by(&self, model: &Model, motion: &Motion) -> Option<&'static str> {
+    pub fn broken_by(&self, model: &Model, motion: &Motion) -> Option<String> {
         let of_joint = |joint: usize| {
+            let name = model.joint_name(joint);
+            let name = name.map_or_else(|| format!("joint {}", joint + 1), str::to_string);
             let most_nm = || most_torque_nm(model, motion, joint);
+            let fastest_rad_s = fastest_rad_s(motion, joint);
             if !self.keeps_angles(motion, joint) {
-                Some("leaves the angles of a joint")
-            } else if fastest_rad_s(motion, joint) > self.speed_rad_s[joint] {
-                Some("turns a joint faster than it may")
+                Some(format!("leaves the angles of {name}"))
+            } else if fastest_rad_s > self.speed_rad_s[joint] {
+                Some(format!(
+                    "turns {name} at {fastest_rad_s:.2} rad/s, faster than {:.2}",
+                    self.speed_rad_s[joint]
+                ))
             } else if self.torque_nm.is_some_and(|most| most_nm() > most) {
-                Some("asks a drive for more torque than it may")
+                Some(format!(
+                    "asks the drive of {name} for more torque than it may"
+                ))
             } else {
                 None
             }

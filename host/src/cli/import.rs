@@ -14,9 +14,13 @@
 //! rounding, and moments of inertia that no body has.
 //!
 //! ```console
-//! $ handstand import so101.urdf --lock gripper=0.3 -o arm.toml
+//! $ handstand import so101.urdf --drive position --lock gripper=0.3 -o arm.toml
 //! $ handstand import robot.urdf --joints shoulder elbow -o arm.toml
 //! ```
+//!
+//! A URDF says with what torque a joint may be driven, not by what: `--drive position` makes servos
+//! that take angles of all joints, whose gain, torque, speed and rotor are guesses until a data
+//! sheet or a fit tells them.
 //!
 //! Without `-o` the file's text goes to stdout. `--json` prints `format` (`urdf`, `mjcf`), `file`
 //! (or null), `text` (null where a file was written), `joints`, `in_space`, `not_carried` and
@@ -25,10 +29,15 @@
 use super::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::model::Model;
-use handstand::model::import::{ImportPlan, Imported, Locked, SpacePlan, import, import_whole};
+use handstand::model::import::{
+    ImportPlan, Imported, JointDrives, Locked, SpacePlan, import, import_whole,
+};
 use handstand::output::vacant;
 use serde_json::json;
 use std::path::{Path, PathBuf};
+
+/// What can drive a joint.
+const DRIVES: [&str; 4] = ["torque", "duty", "position", "speed"];
 
 /// Import a model from another simulator's file.
 #[derive(Debug, clap::Args)]
@@ -53,6 +62,9 @@ pub struct ImportArgs {
     /// Drive joints without an actuator by a torque; they are passive without
     #[arg(long)]
     driven: bool,
+    /// What drives the joints, whatever the file says; a servo's figures are guesses
+    #[arg(long, value_parser = DRIVES, conflicts_with = "driven")]
+    drive: Option<String>,
     /// Model file to write; stdout without it
     #[arg(long, short, value_name = "MODEL.toml")]
     output: Option<PathBuf>,
@@ -106,6 +118,16 @@ pub(super) fn check_in_space(imported: &Imported, output: Option<&Path>) -> Resu
     Model::parse(&imported.toml, file).map(drop)
 }
 
+/// What is asked to drive the joints.
+fn drives(args: &ImportArgs) -> JointDrives {
+    let named = |own: &str| DRIVES.into_iter().find(|drive| *drive == own);
+    match args.drive.as_deref().and_then(named) {
+        Some(drive) => JointDrives::All(drive),
+        None if args.driven => JointDrives::OrTorque,
+        None => JointDrives::OfFile,
+    }
+}
+
 /// The model that is asked for of a robot's text.
 fn taken(args: &ImportArgs, text: &str) -> Result<Imported> {
     let space = SpacePlan {
@@ -113,11 +135,11 @@ fn taken(args: &ImportArgs, text: &str) -> Result<Imported> {
         locked: args.lock.clone(),
     };
     if !args.planar && !args.space && args.joints.is_empty() {
-        return import_whole(text, &args.robot, args.driven, &space);
+        return import_whole(text, &args.robot, drives(args), &space);
     }
     let plan = ImportPlan {
         joints: args.joints.clone(),
-        driven: args.driven,
+        drives: drives(args),
         space: args.space.then_some(space),
     };
     import(text, &args.robot, &plan)

@@ -6,7 +6,7 @@
 use crate::simulators::{Case, largest_difference, python};
 use handstand::Model;
 use handstand::dynamics::Workspace;
-use handstand::model::import::{ImportPlan, import};
+use handstand::model::import::{ImportPlan, JointDrives, import};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -279,7 +279,7 @@ fn imported_robots_accelerate_as_in_pinocchio_and_mujoco() {
         let plan = ImportPlan {
             joints: names.clone(),
             // A rotor needs a drive.
-            driven: true,
+            drives: JointDrives::OrTorque,
             space: None,
         };
         let imported =

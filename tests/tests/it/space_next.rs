@@ -117,7 +117,7 @@ fn first_motions_clear_the_floor_and_are_called_by_the_joints_names() {
     let floor = ["excite", "first.csv", "--model", "crane.toml"];
     let (code, said) = refused(at, &floor);
     assert_eq!(code, 2, "{said}");
-    assert!(said.contains("the plane that it stands on"), "{said}");
+    assert!(said.contains("dips boom into the plane"), "{said}");
     assert!(said.contains("--floor"), "{said}");
     let excite = [&floor[..], &["--floor", "none", "--json"]].concat();
     let (data, _) = run(at, &excite);
@@ -134,4 +134,64 @@ fn first_motions_clear_the_floor_and_are_called_by_the_joints_names() {
     assert_eq!(header, "time_s,slew.effort,luff.effort,roll.effort");
     let both = [&floor[..], &["--joints", "1", "--force"]].concat();
     assert_eq!(refused(at, &both).0, 2);
+}
+
+#[test]
+fn a_robots_file_alone_leads_to_first_goals_of_its_servos() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("crane.urdf"), CRANE).unwrap();
+    let import = [
+        "import",
+        "crane.urdf",
+        "--drive",
+        "position",
+        "-o",
+        "crane.toml",
+    ];
+    let [_, said] = printed(at, &import);
+    assert!(
+        said.contains("motors: of slew, luff, roll: 1.5 N m"),
+        "{said}"
+    );
+    let model = Model::load(&at.join("crane.toml")).unwrap();
+    assert!(model.guessed);
+    let free: Vec<String> = model.free.iter().map(ToString::to_string).collect();
+    assert_eq!(free.len(), 6, "{free:?}");
+    assert!(
+        free.contains(&"joint2.gain_per_rad".to_string()),
+        "{free:?}"
+    );
+    let excite = ["excite", "first.csv", "--model", "crane.toml"];
+    let (data, _) = run(at, &[&excite[..], &["--floor", "none", "--json"]].concat());
+    let text = std::fs::read_to_string(at.join("first.csv")).unwrap();
+    let header = text.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert_eq!(header, "time_s,slew.goal,luff.goal,roll.goal");
+    assert!(data["width"].as_f64().unwrap() >= 0.1, "{data}");
+}
+
+/// A chain in a plane gets servos too; what its file drives already stays as it is.
+#[test]
+fn servos_are_given_to_the_joints_that_have_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let arm = "<mujoco><worldbody><body><joint name=\"a\" axis=\"0 1 0\" armature=\"0.03\"/>\
+               <geom type=\"capsule\" size=\"0.02\" fromto=\"0 0 0 0 0 -0.2\"/>\
+               <body pos=\"0 0 -0.2\"><joint name=\"b\" axis=\"0 1 0\" armature=\"0.02\"/>\
+               <geom type=\"capsule\" size=\"0.02\" fromto=\"0 0 0 0 0 -0.2\"/></body></body>\
+               </worldbody><actuator><position joint=\"a\" kp=\"9\" kv=\"0.3\" \
+               forcerange=\"-2 2\"/></actuator></mujoco>";
+    std::fs::write(at.join("arm.xml"), arm).unwrap();
+    let import = ["import", "arm.xml", "--drive", "position", "-o", "arm.toml"];
+    let [_, said] = printed(at, &import);
+    assert!(said.contains("motors: of b: 1.5 N m"), "{said}");
+    let model = Model::load(&at.join("arm.toml")).unwrap();
+    assert!(model.guessed);
+    let text = std::fs::read_to_string(at.join("arm.toml")).unwrap();
+    assert!(
+        text.contains("free = [\n    \"joint2.gain_per_rad\",\n]"),
+        "{text}"
+    );
+    assert!(text.contains("gain_per_rad = 4.5"), "{text}");
+    assert!(text.contains("inertia_kg_m2 = 0.03"), "{text}");
 }

@@ -10,7 +10,7 @@ use crate::log::init::{Draft, RobotDraft, RobotRequest};
 use crate::log::{LogRequest, RawLog};
 use crate::model::Model;
 use crate::model::edit::set_robot_file;
-use crate::model::import::{Imported, Remark, SpacePlan, import_whole};
+use crate::model::import::{Imported, JointDrives, Remark, SpacePlan, import_whole};
 use std::path::Path;
 
 /// Endings of files that a model is in.
@@ -38,7 +38,7 @@ pub(super) fn is_robot(name: &Path) -> bool {
 /// A text that is no model.
 pub(super) fn check_model(file: &Path, text: &str) -> Result<()> {
     if is_robot(file) {
-        import_whole(text, file, false, &SpacePlan::default()).map(drop)
+        import_whole(text, file, JointDrives::OfFile, &SpacePlan::default()).map(drop)
     } else {
         Model::parse(text, file).map(drop)
     }
@@ -117,7 +117,7 @@ impl LabSession {
             return Ok(SavedStep::by_hand(format!("from {file}"), toml));
         }
         let mut space = SpacePlan::default();
-        let mut imported = import_whole(text, name, false, &space)?;
+        let mut imported = import_whole(text, name, JointDrives::OfFile, &space)?;
         let mut note: Vec<String> = Vec::new();
         if imported.in_space {
             space.robot = match beside {

@@ -4,6 +4,7 @@ use super::Guess;
 use super::log_guess::{JointGuess, LogGuess};
 use super::values::{gravity_of_torques, median, rests, rod_length_m, zero_at_rest};
 use crate::RawLog;
+use crate::model::import::ServoFigures;
 use crate::model::new_model::LinkPlan;
 use crate::output::shortened;
 
@@ -12,11 +13,6 @@ const GRAVITY_M_S2: f64 = 9.81;
 /// A link of which nothing is known.
 const LENGTH_M: f64 = 0.25;
 const MASS_KG: f64 = 0.3;
-/// A servo of which nothing is known: about a Dynamixel AX-12.
-pub(super) const GAIN_PER_RAD: f64 = 8.0;
-pub(super) const GAIN_S_PER_RAD: f64 = 0.5;
-pub(super) const STALL_TORQUE_NM: f64 = 1.5;
-pub(super) const NO_LOAD_SPEED_RAD_S: f64 = 6.0;
 
 /// The joints' motion in SI.
 pub(super) struct Evidence {
@@ -161,10 +157,12 @@ impl Evidence {
             .iter()
             .any(|joint| ["duty", "position", "speed"].contains(&joint.drive))
         {
+            let servo = ServoFigures::guessed("position");
             guesses.push(Guess::new(
                 "motor",
                 format!(
-                    "{STALL_TORQUE_NM} N m at standstill, {NO_LOAD_SPEED_RAD_S} rad/s without load"
+                    "{} N m at standstill, {} rad/s without load",
+                    servo.stall_torque_nm, servo.no_load_speed_rad_s
                 ),
                 "a guess: its data sheet says",
             ));
@@ -180,6 +178,7 @@ impl Evidence {
 
 pub(super) fn link(joint: &JointGuess, length_m: f64, mass_kg: f64) -> LinkPlan {
     let motor = ["duty", "position", "speed"].contains(&joint.drive);
+    let servo = ServoFigures::guessed(joint.drive);
     LinkPlan {
         slide: None,
         length_m,
@@ -187,12 +186,8 @@ pub(super) fn link(joint: &JointGuess, length_m: f64, mass_kg: f64) -> LinkPlan 
         mass_kg,
         inertia_kg_m2: None,
         drive: joint.drive.to_string(),
-        gain: match joint.drive {
-            "position" => Some(GAIN_PER_RAD),
-            "speed" => Some(GAIN_S_PER_RAD),
-            _ => None,
-        },
-        stall_torque_nm: motor.then_some(STALL_TORQUE_NM),
-        no_load_speed_rad_s: motor.then_some(NO_LOAD_SPEED_RAD_S),
+        gain: (motor && joint.drive != "duty").then_some(servo.gain),
+        stall_torque_nm: motor.then_some(servo.stall_torque_nm),
+        no_load_speed_rad_s: motor.then_some(servo.no_load_speed_rad_s),
     }
 }

@@ -3,7 +3,7 @@
 use super::text;
 use handstand::effects::EFFECTS;
 use handstand::model::edit::{add_effect, set_values};
-use handstand::model::import::ImportPlan;
+use handstand::model::import::{ImportPlan, JointDrives};
 use handstand::model::shapes::read_stl;
 use handstand::model::{EffectInstance, Model};
 use std::path::Path;
@@ -74,7 +74,11 @@ pub(crate) fn import(bytes: &[u8]) {
     };
     let plan = ImportPlan {
         joints: Vec::new(),
-        driven: bytes.len().is_multiple_of(2),
+        drives: match bytes.len() % 3 {
+            0 => JointDrives::OfFile,
+            1 => JointDrives::OrTorque,
+            _ => JointDrives::All("position"),
+        },
         space: None,
     };
     let in_space = ImportPlan {

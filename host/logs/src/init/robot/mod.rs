@@ -10,7 +10,6 @@ pub use units::LerobotUnit;
 
 use super::columns::log_guess;
 use super::dataset::joint_of;
-use super::evidence::{GAIN_PER_RAD, GAIN_S_PER_RAD, NO_LOAD_SPEED_RAD_S, STALL_TORQUE_NM};
 use super::log_guess::{ColumnGuess, JointGuess};
 use super::{Guess, gap_s, write};
 use crate::RawLog;
@@ -19,10 +18,6 @@ use crate::lerobot::{COUNT_RAD, Calibration, MotorCalibration};
 use crate::model::import::{JointPlan, LogPlan, MovingJoint, ServoFigures};
 use matching::{LogJoint, MatchedBy, matched, quoted};
 use units::{AngleUnits, Pair, is_lerobot};
-
-/// Rotor times the square of the gear's ratio of a servo of which nothing is known, kg m^2: about
-/// an STS3215.
-const ARMATURE_KG_M2: f64 = 0.01;
 
 /// What is known of a log beside itself.
 #[derive(Debug, Clone, Copy)]
@@ -89,7 +84,7 @@ fn robot_log(log: &RawLog, file: &str, ask: &RobotLog) -> Result<(LogPlan, Vec<G
         joints.push(JointPlan {
             columns,
             drive: pair.1.drive,
-            servo: servo(pair.1.drive),
+            servo: ServoFigures::guessed(pair.1.drive),
         });
     }
     say_drives(&pairs, &mut said);
@@ -182,9 +177,11 @@ fn say_drives(pairs: &[Pair], said: &mut Vec<Guess>) {
         (!names.is_empty()).then(|| quoted(names))
     };
     if let Some(names) = of(&["position", "speed", "duty"]) {
+        let servo = ServoFigures::guessed("position");
         let figures = format!(
-            "of {names}: {STALL_TORQUE_NM} N m at standstill, {NO_LOAD_SPEED_RAD_S} rad/s without \
-             load, a rotor of {ARMATURE_KG_M2} kg m^2 at the joint"
+            "of {names}: {} N m at standstill, {} rad/s without load, a rotor of {} kg m^2 at the \
+             joint",
+            servo.stall_torque_nm, servo.no_load_speed_rad_s, servo.armature_kg_m2
         );
         let why = "a guess: its data sheet says, or `handstand fit` estimates them";
         said.push(Guess::new("motors", figures, why));
@@ -192,19 +189,6 @@ fn say_drives(pairs: &[Pair], said: &mut Vec<Guess>) {
     if let Some(names) = of(&["passive"]) {
         let why = "the log holds no input of theirs that changes";
         said.push(Guess::new("passive", names, why));
-    }
-}
-
-fn servo(drive: &str) -> ServoFigures {
-    ServoFigures {
-        gain: if drive == "speed" {
-            GAIN_S_PER_RAD
-        } else {
-            GAIN_PER_RAD
-        },
-        stall_torque_nm: STALL_TORQUE_NM,
-        no_load_speed_rad_s: NO_LOAD_SPEED_RAD_S,
-        armature_kg_m2: ARMATURE_KG_M2,
     }
 }
 

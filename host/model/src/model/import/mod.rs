@@ -12,6 +12,7 @@ mod log_plan;
 pub(super) mod mjcf;
 mod planar;
 pub(super) mod prefixes;
+mod servo;
 mod solid;
 pub(super) mod space;
 #[cfg(test)]
@@ -21,7 +22,8 @@ pub(super) mod urdf;
 mod write;
 pub(super) mod xml;
 
-pub use log_plan::{JointPlan, LogPlan, MovingJoint, ServoFigures, import_for_log, moving_joints};
+pub use log_plan::{JointPlan, LogPlan, MovingJoint, import_for_log, moving_joints};
+pub use servo::ServoFigures;
 pub use solid::Solid;
 pub use space::Locked;
 pub use tree::Remark;
@@ -32,6 +34,7 @@ use crate::model::robot::fingerprint;
 use groups::ready_to_paste;
 use planar::{PlanarChain, planar_chain, whole_chain};
 use prefixes::declared;
+use servo::all_driven;
 use space::{InSpace, in_space};
 use std::path::Path;
 use tree::{RobotTree, TreeDrive};
@@ -46,10 +49,23 @@ const MOST_BODIES: usize = 10_000;
 pub struct ImportPlan {
     /// Joints from the base to the tip; without names the most hinges in a row.
     pub joints: Vec<String>,
-    /// Whether joints that the file does not drive are driven by a torque.
-    pub driven: bool,
+    /// What drives the joints.
+    pub drives: JointDrives,
     /// A robot in space: all of its joints, but those that are held.
     pub space: Option<SpacePlan>,
+}
+
+/// What drives the joints of a robot.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum JointDrives {
+    /// What the file says: what it does not drive is passive.
+    #[default]
+    OfFile,
+    /// The same, and a torque what the file does not drive.
+    OrTorque,
+    /// `torque`, `duty`, `position` or `speed`, whatever the file says: a joint that has another
+    /// drive there gets a servo whose figures are guesses.
+    All(&'static str),
 }
 
 /// How a robot in space is taken.
@@ -88,58 +104,74 @@ pub struct Imported {
 /// Broken XML and what the formats' readers refuse, with line and column; joints that make no
 /// planar chain.
 pub fn import(text: &str, path: &Path, plan: &ImportPlan) -> Result<Imported> {
-    let (format, tree) = robot(text, path, plan.driven)?;
+    let (format, tree) = robot(text, path, plan.drives)?;
     let name = path.display().to_string();
     if let Some(space) = &plan.space {
-        let found = in_space(&tree, &space.locked, &name)?;
+        let mut found = in_space(&tree, &space.locked, &name)?;
+        let guessed = all_driven(plan.drives, &mut found.joints, &mut found.notes);
         let parts = ImportedParts {
             format,
             text,
             tree: &tree,
         };
-        return Ok(parts.in_space(found, space, None));
+        return Ok(parts.in_space(found, space, None, &guessed));
     }
     let chain = planar_chain(&tree, &plan.joints, &name)?;
-    in_plane(&tree, chain, format, path)
+    in_plane(&tree, chain, plan.drives, format, path)
 }
 
 /// The model of a whole robot: the planar chain of its joints where they make one and none is
-/// held, else the robot in space; `path` only names the file. Joints that the file does not drive
-/// are driven by a torque if `driven`.
+/// held, else the robot in space; `path` only names the file.
 ///
 /// # Errors
 /// As [`import`], but for joints that make no planar chain.
-pub fn import_whole(text: &str, path: &Path, driven: bool, space: &SpacePlan) -> Result<Imported> {
-    let (format, tree) = robot(text, path, driven)?;
+pub fn import_whole(
+    text: &str,
+    path: &Path,
+    drives: JointDrives,
+    space: &SpacePlan,
+) -> Result<Imported> {
+    let (format, tree) = robot(text, path, drives)?;
     let name = path.display().to_string();
     if space.locked.is_empty()
         && let Some(chain) = whole_chain(&tree, &name)
     {
-        return in_plane(&tree, chain, format, path);
+        return in_plane(&tree, chain, drives, format, path);
     }
     let mut found = in_space(&tree, &space.locked, &name)?;
     if let Some(chains) = ready_to_paste(&tree, &name) {
         let why = format!("in space, with all that moves; {chains} takes a planar chain");
         found.notes.insert(0, Remark::new("robot", None, why));
     }
+    let guessed = all_driven(drives, &mut found.joints, &mut found.notes);
     let parts = ImportedParts {
         format,
         text,
         tree: &tree,
     };
-    Ok(parts.in_space(found, space, None))
+    Ok(parts.in_space(found, space, None, &guessed))
 }
 
 /// The model of a planar chain.
 fn in_plane(
     tree: &RobotTree,
     mut chain: PlanarChain,
+    drives: JointDrives,
     format: &'static str,
     path: &Path,
 ) -> Result<Imported> {
+    let joints = chain.links.iter_mut().map(|link| &mut link.joint);
+    let guessed = all_driven(drives, joints, &mut chain.notes);
     let mut left_out = tree.left_out.clone();
     left_out.extend(chain.left_out.iter().cloned());
-    let toml = write::toml(&tree.name, &mut chain, format, path, &mut left_out)?;
+    let toml = write::toml(
+        &tree.name,
+        &mut chain,
+        format,
+        path,
+        &guessed,
+        &mut left_out,
+    )?;
     let joints = chain.links.into_iter().map(|link| link.joint.name);
     Ok(Imported {
         format,
@@ -159,13 +191,14 @@ struct ImportedParts<'a> {
 }
 
 impl ImportedParts<'_> {
-    /// The model of the robot in space; with a log's plan and the addresses of what is guessed of
-    /// the drives, its `[log]` and `[fit]` are theirs.
+    /// The model of the robot in space; with a log's plan its `[log]` is that one's. Its `[fit]` is
+    /// of the values at these addresses, which are guesses.
     fn in_space(
         &self,
         mut found: InSpace,
         space: &SpacePlan,
-        log: Option<(&LogPlan, &[String])>,
+        log: Option<&LogPlan>,
+        guessed: &[String],
     ) -> Imported {
         found
             .left_out
@@ -175,9 +208,9 @@ impl ImportedParts<'_> {
             sha256: &fingerprint(self.text),
             locked: &space.locked,
         };
-        let name = log.and_then(|(plan, _)| plan.name.as_ref());
+        let name = log.and_then(|plan| plan.name.as_ref());
         let name = name.unwrap_or(&self.tree.name);
-        let toml = write::toml_in_space(name, &mut found, self.format, &named, log);
+        let toml = write::toml_in_space(name, &mut found, self.format, &named, log, guessed);
         let joints = found.joints.into_iter().map(|joint| joint.name);
         Imported {
             format: self.format,
@@ -190,9 +223,9 @@ impl ImportedParts<'_> {
     }
 }
 
-/// What a file describes, and its format; joints that nothing drives are given a torque if
-/// `driven`.
-fn robot(text: &str, path: &Path, driven: bool) -> Result<(&'static str, RobotTree)> {
+/// What a file describes, and its format; joints that nothing drives are given a torque where that
+/// is asked for.
+fn robot(text: &str, path: &Path, drives: JointDrives) -> Result<(&'static str, RobotTree)> {
     let text = declared(text);
     let (format, mut tree) = tree_of(XmlFile::parse(path, &text)?.root())?;
     if tree.bodies.len() > MOST_BODIES {
@@ -202,7 +235,7 @@ fn robot(text: &str, path: &Path, driven: bool) -> Result<(&'static str, RobotTr
             format!("at most {MOST_BODIES} are read"),
         ));
     }
-    if driven {
+    if drives == JointDrives::OrTorque {
         for joint in tree.bodies.iter_mut().flat_map(|body| &mut body.joints) {
             if joint.drive == TreeDrive::None {
                 joint.drive = TreeDrive::Torque(joint.most_nm);
@@ -241,7 +274,7 @@ pub(super) struct RobotInSpace {
 /// # Errors
 /// As [`import`], but for joints that make no planar chain.
 pub(super) fn robot_in_space(text: &str, path: &Path, locked: &[Locked]) -> Result<RobotInSpace> {
-    let (_, tree) = robot(text, path, false)?;
+    let (_, tree) = robot(text, path, JointDrives::OfFile)?;
     let found = in_space(&tree, locked, &path.display().to_string())?;
     Ok(RobotInSpace {
         tree: found.tree,

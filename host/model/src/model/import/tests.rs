@@ -9,7 +9,7 @@ use crate::model::export::{mjcf as to_mjcf, urdf as to_urdf};
 fn imported(text: &str, joints: &[&str]) -> (Imported, Model) {
     let plan = ImportPlan {
         joints: joints.iter().map(ToString::to_string).collect(),
-        driven: false,
+        drives: JointDrives::OfFile,
         space: None,
     };
     let imported = import(text, Path::new("robot.xml"), &plan).unwrap();
@@ -21,7 +21,7 @@ fn refused(text: &str, joints: &[&str]) -> String {
     let joints = joints.iter().map(ToString::to_string).collect();
     let plan = ImportPlan {
         joints,
-        driven: false,
+        drives: JointDrives::OfFile,
         space: None,
     };
     let error = import(text, Path::new("robot.xml"), &plan).unwrap_err();

@@ -25,6 +25,7 @@ pub(super) fn toml(
     chain: &mut PlanarChain,
     format: &str,
     path: &Path,
+    guessed: &[String],
     left_out: &mut Vec<Remark>,
 ) -> Result<String> {
     possible(chain, path)?;
@@ -41,7 +42,7 @@ pub(super) fn toml(
     );
     let name = name.replace(char::is_control, " ");
     let plan = ModelPlan {
-        guessed: false,
+        guessed: !guessed.is_empty(),
         name: match name.trim() {
             "" => "robot".to_string(),
             _ => name,
@@ -64,7 +65,11 @@ pub(super) fn toml(
     let text = model_toml(
         &plan,
         &(head + "\n"),
-        &format!("{effects}{UNCERTAINTY}{}", log_table(&chain.links)),
+        &format!(
+            "{effects}{}{UNCERTAINTY}{}",
+            fit_table(guessed),
+            log_table(&chain.links)
+        ),
     );
     // The model's text is not there for anyone to look into.
     text.map_err(|error| match error {
@@ -288,6 +293,22 @@ fn write_effects(text: &mut String, index: usize, link: &mut PlanarLink, format:
             _ => effect("armature", of_joint("armature"), &[joint.armature_kg_m2]),
         }
     }
+}
+
+/// `[fit]` of values that are guesses; nothing without.
+fn fit_table(guessed: &[String]) -> String {
+    if guessed.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from(
+        "\n# Guesses that a fit may change. What the logs do not determine, it says: take that \
+         off.\n[fit]\nfree = [\n",
+    );
+    for address in guessed {
+        let _ = writeln!(text, "    {},", toml_edit::Value::from(address.as_str()));
+    }
+    text.push_str("]\n");
+    text
 }
 
 fn log_table(links: &[PlanarLink]) -> String {

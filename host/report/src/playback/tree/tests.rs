@@ -1,5 +1,5 @@
 use super::*;
-use crate::model::import::{ImportPlan, SpacePlan, import};
+use crate::model::import::{ImportPlan, JointDrives, SpacePlan, import};
 use crate::model::shapes::{Mesh, NotDrawn};
 use crate::playback::{Scene, html};
 use base64::Engine as _;
@@ -33,7 +33,7 @@ fn model() -> Model {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("fork.urdf"), ROBOT).unwrap();
     let plan = ImportPlan {
-        driven: true,
+        drives: JointDrives::OrTorque,
         space: Some(SpacePlan {
             robot: "fork.urdf".into(),
             locked: Vec::new(),

@@ -3,7 +3,7 @@
 use super::robot_file;
 use crate::model::Model;
 use crate::model::export::NotCarried;
-use crate::model::import::{ImportPlan, SpacePlan, import};
+use crate::model::import::{ImportPlan, JointDrives, SpacePlan, import};
 use std::path::{Path, PathBuf};
 
 /// A mast, a boom with a fixed counterweight, a cart that slides and a jaw that is locked; a prefix
@@ -111,7 +111,11 @@ impl Crane {
 fn imported(text: &str, locked: &[(&str, f64)], driven: bool) -> (String, &'static str) {
     let locked = locked.iter().map(|(name, at)| (name.to_string(), *at));
     let plan = ImportPlan {
-        driven,
+        drives: if driven {
+            JointDrives::OrTorque
+        } else {
+            JointDrives::OfFile
+        },
         space: Some(SpacePlan {
             robot: "crane.xml".into(),
             locked: locked.collect(),

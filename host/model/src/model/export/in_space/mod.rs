@@ -23,7 +23,7 @@ use crate::model::import::prefixes::{added, declared};
 use crate::model::import::space::{InSpace, in_space};
 use crate::model::import::tree::RobotTree;
 use crate::model::import::xml::{Element, XmlFile};
-use crate::model::import::{ImportPlan, SpacePlan, import, tree_of};
+use crate::model::import::{ImportPlan, JointDrives, SpacePlan, import, tree_of};
 use crate::model::{Model, Robot, parse};
 use edits::Edits;
 use lacking::lacking;
@@ -101,9 +101,9 @@ struct Pair<'a> {
 impl<'a> Pair<'a> {
     /// `text` is the robot's, `path` the model's file.
     fn of(own: &'a Model, robot: &Robot, text: &str, path: &Path) -> Result<Self> {
-        let read = |driven: bool| {
+        let read = |drives: JointDrives| {
             let plan = ImportPlan {
-                driven,
+                drives,
                 space: Some(SpacePlan {
                     robot: robot.file.clone(),
                     locked: robot.locked.clone(),
@@ -115,8 +115,8 @@ impl<'a> Pair<'a> {
         };
         Ok(Pair {
             own,
-            free: read(false)?,
-            driven: read(true)?,
+            free: read(JointDrives::OfFile)?,
+            driven: read(JointDrives::OrTorque)?,
         })
     }
 

@@ -4,7 +4,7 @@
 use super::{imported, refused};
 use crate::Model;
 use crate::model::import::{ImportPlan, Imported, import};
-use crate::model::import::{SpacePlan, import_whole};
+use crate::model::import::{JointDrives, SpacePlan, import_whole};
 use std::path::Path;
 
 /// Two links, the attributes of the second joint's body and joint, and what else is in the file.
@@ -367,7 +367,7 @@ fn whole(text: &str, locked: &[(&str, f64)]) -> Imported {
         robot: "arm.urdf".into(),
         locked: locked.collect(),
     };
-    import_whole(text, Path::new("arm.urdf"), false, &space).unwrap()
+    import_whole(text, Path::new("arm.urdf"), JointDrives::OfFile, &space).unwrap()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A robot in space as a model file.
 
-use super::{drive_figures, link_plan, log_table, possible_drive, write_effects};
+use super::{drive_figures, fit_table, link_plan, log_table, possible_drive, write_effects};
 use crate::dynamics::{SlideAxis, SpatialEquations, SpatialLink, SpatialTree};
 use crate::model::import::LogPlan;
 use crate::model::import::planar::PlanarLink;
@@ -27,7 +27,8 @@ pub(in crate::model::import) fn toml_in_space(
     found: &mut InSpace,
     format: &str,
     named: &RobotName,
-    log: Option<(&LogPlan, &[String])>,
+    log: Option<&LogPlan>,
+    guessed: &[String],
 ) -> String {
     let mut effects = String::new();
     let mut links: Vec<PlanarLink> = (found.joints.iter())
@@ -45,26 +46,26 @@ pub(in crate::model::import) fn toml_in_space(
     for line in notes.chain(left_out) {
         let _ = writeln!(text, "# {}", line.replace(char::is_control, " "));
     }
-    let is_guessed = log.is_some_and(|(_, guessed)| !guessed.is_empty());
     let step_s = short_step_s(&found.tree, &links);
-    write_rig(&mut text, name, named, step_s, is_guessed);
+    write_rig(&mut text, name, named, step_s, !guessed.is_empty());
     write_bodies(&mut text, found, &links);
     text.push_str(&effects);
+    text.push_str(&fit_table(guessed));
     match log {
         None => text.push_str(&log_table(&links)),
-        Some((plan, guessed)) => write_log(&mut text, plan, guessed),
+        Some(plan) => write_log(&mut text, plan),
     }
     text
 }
 
 /// The comments at the head.
-fn head(format: &str, log: Option<(&LogPlan, &[String])>) -> String {
+fn head(format: &str, log: Option<&LogPlan>) -> String {
     let mut text = format!(
         "# A robot in space, whose shape is that of its {} file: joints and links stand here in\n\
          # the file's order and by its names.",
         format.to_uppercase()
     );
-    let Some((plan, _)) = log else {
+    let Some(plan) = log else {
         text += " Columns are named after the joints: mend them for\n# your logs.\n";
         return text;
     };
@@ -75,19 +76,8 @@ fn head(format: &str, log: Option<(&LogPlan, &[String])>) -> String {
     text
 }
 
-/// Writes `[fit]` and `[log]` of a log.
-fn write_log(text: &mut String, plan: &LogPlan, guessed: &[String]) {
-    if !guessed.is_empty() {
-        let _ = writeln!(
-            text,
-            "\n# Guesses that a fit may change. What the logs do not determine, it says: take that \
-             off.\n[fit]\nfree = ["
-        );
-        for address in guessed {
-            let _ = writeln!(text, "    {},", quoted(address));
-        }
-        text.push_str("]\n");
-    }
+/// Writes the `[log]` of a log.
+fn write_log(text: &mut String, plan: &LogPlan) {
     let _ = write!(text, "\n[log]\n{}", plan.head);
     for joint in &plan.joints {
         let _ = write!(text, "\n[[log.joint]]\n{}", joint.columns);
