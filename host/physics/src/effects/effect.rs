@@ -9,6 +9,9 @@ use std::{fmt, ops};
 /// Relative step of a finite difference in the values of a smooth law.
 pub const SMOOTH_DIFFERENCE: f64 = 2e-4;
 
+/// Longest step over which most laws that remember from step to step go on well, s.
+pub const REMEMBERED_STEP_S: f64 = 0.0051;
+
 /// A law by which joints depart from the rigid chain with ideal drives and sensors.
 ///
 /// It is one law for both kinds of joint: in rad and N m where the joint turns, in m and N where it
@@ -24,6 +27,11 @@ pub trait Law: Sync + fmt::Debug {
     /// difference sees the jumps pass.
     fn difference(&self) -> f64 {
         SMOOTH_DIFFERENCE
+    }
+
+    /// Longest step over which what it remembers from step to step goes on well, s.
+    fn longest_step_s(&self) -> f64 {
+        REMEMBERED_STEP_S
     }
 
     /// Whether it comes with the servo; `None` where its site tells. See [`Effect::is_of_servo`].

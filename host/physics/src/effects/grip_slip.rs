@@ -61,6 +61,11 @@ impl Law for GripSlip {
         5e-3
     }
 
+    /// What a shaft has slipped stays: a motion that turns within a step is off ever after.
+    fn longest_step_s(&self) -> f64 {
+        0.0021
+    }
+
     fn slipped(&self, memory: SenseMemory) -> [f64; 2] {
         memory.ahead_rad()
     }

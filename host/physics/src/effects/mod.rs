@@ -60,7 +60,7 @@ pub mod signature;
 mod tests;
 
 pub use base_compliance::BaseSpring;
-pub use effect::{Effect, Law, SMOOTH_DIFFERENCE};
+pub use effect::{Effect, Law, REMEMBERED_STEP_S, SMOOTH_DIFFERENCE};
 pub use gear::{Coupling, Flank, Gear};
 pub use info::{Axis, Confusion, EffectInfo, Needs, OnSlide, Parameter, Scope, Site, ValueBehind};
 pub use look_up::{NameMatch, listed, look_up};

@@ -6,7 +6,9 @@ mod readings;
 use super::hidden::HiddenUnknown;
 use super::joint_plan::JointPlan;
 use crate::dynamics::SpatialEquations;
-use crate::effects::{BaseSpring, CONTROLS, Coupling, EFFECTS, Needs, PLACEBO, Rig};
+use crate::effects::{
+    BaseSpring, CONTROLS, Coupling, EFFECTS, Needs, PLACEBO, REMEMBERED_STEP_S, Rig,
+};
 use crate::model::{Angles, MeasuredSignal, Model};
 use crate::motion::Motion;
 pub(super) use rate_reading::RateReading;
@@ -138,7 +140,7 @@ impl Plant {
             zero_rad: model.angle_zero.from_hanging_rad(),
             zeros_rad: each(model, |joint| model.zero_rad(joint)),
             absolute: model.angles == Angles::Absolute,
-            step_s: step_s(model.step_s, of_joints > 0 || senses),
+            step_s: step_s(model.step_s, &joints),
             torques_stay: joints.iter().all(JointPlan::torque_stays),
             needs_gear_load: needs.contains(&Needs::GearLoad),
             needs_bearing_load: needs.contains(&Needs::BearingLoad),
@@ -219,17 +221,17 @@ fn each<T>(model: &Model, value: impl Fn(usize) -> T) -> Vec<T> {
 /// integrates it well; so for a base.
 const AUXILIARY_STEP: f64 = 0.4;
 
-/// Longest step over which laws that remember from step to step, a grip that slips for one, go on
-/// well, s.
-const REMEMBERED_STEP_S: f64 = 0.0051;
-
-/// The model's longest step, s, where no law remembers from step to step.
-fn step_s(of_model_s: f64, remembers: bool) -> f64 {
-    if remembers {
-        of_model_s.min(REMEMBERED_STEP_S)
-    } else {
-        of_model_s
-    }
+/// The model's longest step, s, or that of the laws that remember from step to step.
+fn step_s(of_model_s: f64, joints: &[JointPlan]) -> f64 {
+    let of_joint = |joint: &JointPlan| {
+        let remembering = joint.remembering().map(|(active, _)| active);
+        let laws = remembering.chain(&joint.sense);
+        let of_gear = joint.gear_cell.map(|_| REMEMBERED_STEP_S);
+        laws.map(|active| active.effect.longest_step_s())
+            .chain(of_gear)
+            .fold(f64::INFINITY, f64::min)
+    };
+    joints.iter().map(of_joint).fold(of_model_s, f64::min)
 }
 
 /// Whether any joint has such a gear.

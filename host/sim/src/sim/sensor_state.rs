@@ -162,3 +162,54 @@ fn trail_behind<'a>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::model::Model;
+    use crate::motion::Motion;
+    use crate::sim::{Plant, PlantMemory, StartState, predict};
+    use std::path::Path;
+
+    /// An arm with friction, pushed to and fro, whose sensor's shaft slips.
+    fn read(step_s: f64) -> Vec<f64> {
+        let text = format!(
+            "[rig]\nname = \"a\"\nangle_zero = \"hanging\"\nstep_s = {step_s}\n\
+             [[link]]\ncom_m = 0.1\nmass_kg = 0.3\ninertia_kg_m2 = 1e-3\n\
+             [[joint]]\ndrive = \"torque\"\n\
+             [[effect]]\nkind = \"coulomb\"\njoint = 1\ntorque_nm = 0.05\n\
+             [[effect]]\nkind = \"grip_slip\"\njoint = 1\nacceleration_rad_s2 = 60.0\n\
+             [log]\ntime = {{ column = \"t\", unit = \"s\" }}\n\
+             [[log.joint]]\nposition = {{ column = \"q\", unit = \"rad\" }}\n\
+             input = {{ column = \"u\", unit = \"N m\" }}\n"
+        );
+        let model = Model::parse(&text, Path::new("a.toml")).unwrap();
+        let time_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
+        let pushed = |t: &f64| 0.25 * (9.0 * t).sin() + 0.2 * (23.0 * t).cos();
+        let motion = Motion {
+            position_rad: vec![vec![0.0; time_s.len()]],
+            velocity_rad_s: vec![None],
+            input: vec![Some(time_s.iter().map(pushed).collect())],
+            time_s,
+            ..Motion::default()
+        };
+        let start = StartState {
+            angle_rad: vec![0.0],
+            speed_rad_s: vec![0.0],
+            reading_slope: None,
+        };
+        let (plant, mut memory) = (Plant::new(&model, &motion), PlantMemory::default());
+        let mut readings = vec![0.0; motion.len()];
+        let all = 0..motion.len();
+        predict(&plant, &motion, all, &start, &mut memory, &mut readings);
+        readings
+    }
+
+    /// What has slipped never comes back, so no step may be longer than the law follows.
+    #[test]
+    fn a_shaft_that_slips_reads_the_same_in_long_steps() {
+        let (long, short) = (read(0.005), read(0.0002));
+        let off = long.iter().zip(&short).map(|(a, b)| (a - b).abs());
+        let most_rad = off.fold(0.0, f64::max);
+        assert!(most_rad < 1e-3, "{most_rad}");
+    }
+}
