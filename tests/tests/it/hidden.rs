@@ -12,6 +12,7 @@ fn case(family: Family, hidden: &[&'static str], seed: u64) -> Case {
         family,
         hidden: hidden.to_vec(),
         seed,
+        skipped: Vec::new(),
     }
 }
 
@@ -154,6 +155,7 @@ fn the_virtual_robot_s_recordings_show_what_it_hides() {
             family: Family::Robot,
             hidden: vec![kind],
             seed,
+            skipped: Vec::new(),
         };
         let dir = tempfile::tempdir().unwrap();
         let files = case.write(dir.path()).unwrap();

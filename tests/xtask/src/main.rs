@@ -79,6 +79,8 @@ enum Chore {
     Virtual(Words),
     /// Measure whether a limited time gives a diagnosis the verdict of the whole search
     Within(Words),
+    /// Measure what each part of the search for missing effects brings
+    Ablation(Words),
 }
 
 /// What the measuring program reads for itself.
@@ -122,6 +124,7 @@ fn main() -> ExitCode {
         Chore::Verdicts(words) => ("verdicts", words),
         Chore::Virtual(words) => ("virtual", words),
         Chore::Within(words) => ("within", words),
+        Chore::Ablation(words) => ("ablation", words),
     };
     measure(name, &words.words)
 }

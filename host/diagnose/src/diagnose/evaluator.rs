@@ -11,6 +11,7 @@ use super::options::DiagnoseOptions;
 use super::progress::{Course, Stage};
 use super::residual_structure::residual_structure;
 use super::search::SearchResults;
+use super::strategy::Strategy;
 use super::values::as_given;
 use crate::fitting::{
     BestSoFar, Candidate, Fit, FitOptions, FitProblem, Horizon, PredictionChange, Sizes, changes,
@@ -62,6 +63,8 @@ pub(super) struct Evaluator<'a> {
     /// Most effects named together.
     pub most_effects: usize,
     pub reach: Reach,
+    /// Parts of the search that are left out.
+    pub skipped: Vec<Strategy>,
     /// Whether a search of everything would begin with the same windows.
     pub follows_first: bool,
     pub course: Course<'a>,
@@ -147,11 +150,17 @@ impl<'a> Evaluator<'a> {
             seed: options.seed,
             most_effects,
             reach,
+            skipped: options.skipped.clone(),
             follows_first,
             course,
             fork: None,
             evaluated: Mutex::default(),
         }
+    }
+
+    /// Whether a part of the search is done.
+    pub fn does(&self, strategy: Strategy) -> bool {
+        !self.skipped.contains(&strategy)
     }
 
     /// The same for a search of everything, as far as this one has come.
@@ -166,6 +175,7 @@ impl<'a> Evaluator<'a> {
             changes: self.changes.clone(),
             start: self.start.clone(),
             known: self.known.clone(),
+            skipped: self.skipped.clone(),
             course: self.course.clone(),
             reach: Reach::Everything,
             fork: None,

@@ -7,6 +7,7 @@
 use super::budget::{FINALISTS, FIRST_LOOK_STEPS, LOOK, MANY, SECOND_LOOKS};
 use super::evaluator::{Evaluator, Reach};
 use super::hypothesis::Hypothesis;
+use super::strategy::Strategy;
 use crate::fitting::{FitOptions, InitialGuess, PredictionChange, ProjectedResidual};
 use crate::model::ParameterPath;
 use rayon::prelude::*;
@@ -145,12 +146,14 @@ impl Evaluator<'_> {
         limit: f64,
     ) -> Option<Hypothesis> {
         for (_, hypothesis) in &mut glances {
-            let is_misled = hypothesis.search_mean > MISLED * from.search_mean;
+            let is_misled = hypothesis.search_mean > MISLED * from.search_mean
+                && self.does(Strategy::MisledGlances);
             if hypothesis.search_mean <= limit || is_misled {
                 hypothesis.resume(&self.search, FitOptions::iterations(LOOK).rough());
             }
         }
-        let first = glances.first().filter(|_| self.small());
+        let has_starts = self.small() && self.does(Strategy::RandomStarts);
+        let first = glances.first().filter(|_| has_starts);
         let restarts = first.map(|(guess, _)| self.random_starts(from, guess));
         self.course.step(1);
         let looks = glances.into_iter().map(|(_, hypothesis)| hypothesis);

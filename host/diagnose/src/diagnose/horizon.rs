@@ -4,6 +4,7 @@ use super::block_errors::{gain, paired};
 use super::budget::{EVALUATE, FAR_BEHIND, FINISH};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
+use super::strategy::Strategy;
 use super::verdict::FAR_OFF;
 use crate::fitting::{FitOptions, FitProblem, Horizon};
 use crate::motion::Motion;
@@ -33,7 +34,8 @@ impl Evaluator<'_> {
     /// nothing. The gain of log-likelihood on the motions that decide weighs one against the other.
     pub fn choose_horizon(&mut self, leaders: &[Hypothesis]) {
         let horizons = self.horizons();
-        if self.horizon_given || horizons.len() == 1 || self.at_noise_floor(&self.base) {
+        let is_free = !self.horizon_given && self.does(Strategy::ChosenHorizon);
+        if !is_free || horizons.len() == 1 || self.at_noise_floor(&self.base) {
             return;
         }
         let whole = self.most_gained(leaders, Horizon::Whole);
@@ -78,7 +80,8 @@ impl Evaluator<'_> {
         }
         // Where little more than noise is left, a shorter run only shows less.
         let lost = !leaders.iter().any(is_followed);
-        if !self.lengthen_horizon(leaders, sizes) && lost {
+        let is_longer = self.does(Strategy::LongerHorizon) && self.lengthen_horizon(leaders, sizes);
+        if !is_longer && lost && self.does(Strategy::ShorterHorizon) {
             self.shorten_horizon(sizes);
         }
     }

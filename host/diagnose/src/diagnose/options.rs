@@ -1,5 +1,6 @@
 //! What a diagnosis may be told.
 
+use super::strategy::Strategy;
 use crate::fitting::{Horizon, StopSwitch};
 use crate::model::ParameterPath;
 
@@ -24,6 +25,8 @@ pub struct DiagnoseOptions {
     pub tolerance_rad: Option<f64>,
     /// Seconds that the diagnosis may take, judging included; it claims no more than it examined.
     pub within_s: Option<f64>,
+    /// Parts of the search that are left out, to measure what they bring.
+    pub skipped: Vec<Strategy>,
     /// Ends the diagnosis from another thread.
     pub stop: StopSwitch,
 }
@@ -39,6 +42,7 @@ impl Default for DiagnoseOptions {
             trust_log: false,
             tolerance_rad: None,
             within_s: None,
+            skipped: Vec::new(),
             stop: StopSwitch::default(),
         }
     }

@@ -15,6 +15,7 @@ use super::options::DiagnoseOptions;
 use super::progress::{Course, Stage};
 use super::search::SearchResults;
 use super::stability::folds;
+use super::strategy::Strategy;
 use super::turns::{Turn, turns};
 use super::verdict::MOST_NOMINAL;
 use crate::effects::{CONTROLS, PLACEBO};
@@ -66,7 +67,8 @@ pub(super) fn diagnose_on(
     };
     let evaluator = |reach| evaluator_of(split, reach);
     let mut found = FinishedSearch::by(evaluator(Reach::Promising));
-    if found.ended == SearchEnded::Complete && !found.is_explained() {
+    let takes_turns = found.evaluator.does(Strategy::Turns);
+    if takes_turns && found.ended == SearchEnded::Complete && !found.is_explained() {
         for turn in turns(&found.evaluator, split, may_split) {
             let turned = course
                 .halt
@@ -185,6 +187,7 @@ impl<'a> FinishedSearch<'a> {
     fn may_go_on(&mut self) -> bool {
         let is_needed = self.ended != SearchEnded::Tolerance
             && self.evaluator.most_effects > 1
+            && self.evaluator.does(Strategy::SecondSearch)
             && !self.is_explained();
         let was_ended = !self.left_out.is_empty();
         if is_needed && was_ended {
@@ -287,6 +290,7 @@ impl Evaluator<'_> {
         let explanation = tried.explanation(self);
         let own = OwnFits::of(explanation.hypothesis(), &self.training)?;
         if let Explanation::Effects(best) = explanation
+            && self.does(Strategy::OwnFits)
             && let Some(fit) = own.fit_to_all(best, &self.training)
         {
             let mut best = best.clone();

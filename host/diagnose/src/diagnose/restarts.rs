@@ -5,6 +5,7 @@ use super::budget::{FAR_BEHIND, FINALISTS, FINISH, RESTART_LOOK, RESTARTS, START
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::multistart::{Valleys, scattered};
+use super::strategy::Strategy;
 use crate::fitting::{Candidate, Fit, FitOptions, InitialGuess, fit, fit_through_stages};
 use crate::model::{Model, ParameterPath};
 use rand::SeedableRng;
@@ -55,7 +56,8 @@ impl Evaluator<'_> {
         } else {
             usize::MAX
         };
-        let jumping = sorted.iter_mut().filter(|h| self.jumps_alone(h));
+        let does = self.does(Strategy::Restarts);
+        let jumping = sorted.iter_mut().filter(|h| does && self.jumps_alone(h));
         let jumping: Vec<&mut Hypothesis> = jumping.take(most).collect();
         jumping.into_par_iter().for_each(|hypothesis| {
             self.restart(hypothesis, |model, free, options| {
@@ -67,7 +69,9 @@ impl Evaluator<'_> {
     /// The same for the one that leads, from shorter windows to longer ones: where even the windows
     /// of the search have false valleys.
     pub fn restage_leader(&self, sorted: &mut [Hypothesis]) {
-        if let Some(leader) = sorted.first_mut().filter(|h| self.jumps_alone(h)) {
+        let does = self.does(Strategy::RestagedLeader);
+        let leader = sorted.first_mut().filter(|_| does);
+        if let Some(leader) = leader.filter(|h| self.jumps_alone(h)) {
             self.restart(leader, |model, free, options| {
                 fit_through_stages(model, free, &self.search, options)
             });

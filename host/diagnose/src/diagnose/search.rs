@@ -14,6 +14,7 @@ use super::evaluator::{Evaluator, Reach, every_change};
 use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
 use super::progress::Stage;
+use super::strategy::Strategy;
 use super::verdict::FAR_OFF;
 use crate::fitting::{FitOptions, InitialGuess};
 use rayon::prelude::*;
@@ -203,7 +204,8 @@ impl Evaluator<'_> {
                     let known = found.taken_apart.iter().any(|known| whole.adds(known));
                     whole.set.len() > 1 && !known
                 });
-            let Some(whole) = whole.cloned() else {
+            let takes_apart = self.does(Strategy::TakingApart);
+            let Some(whole) = whole.filter(|_| takes_apart).cloned() else {
                 return;
             };
             self.take_apart(&whole, &mut found.sizes[whole.set.len() - 2]);
@@ -251,7 +253,7 @@ impl Evaluator<'_> {
         } else {
             smaller.first()
         };
-        if let Some(from) = from {
+        if let Some(from) = from.filter(|_| self.does(Strategy::GrowingAfresh)) {
             self.grow_afresh(&from.clone(), larger);
             self.take_evaluated();
         }
@@ -336,7 +338,7 @@ impl Evaluator<'_> {
     /// in the best.
     fn grow(&self, smaller: &[Hypothesis]) -> Vec<Hypothesis> {
         let mut tried: Vec<Hypothesis> = Vec::new();
-        for from in beam(smaller) {
+        for from in beam(smaller, self.does(Strategy::LeastBehind)) {
             let partners = self.partners(from, &tried);
             let found = partners.par_iter().map(|guess| {
                 self.course.step(1);
@@ -352,8 +354,8 @@ impl Evaluator<'_> {
 
 /// The sets that larger ones grow from: the best of the short windows, unless they are far behind
 /// the first, and the one that leaves least where it counts, which may lie behind five of the first
-/// that are nearly the same.
-fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
+/// that are nearly the same: that one if asked for.
+fn beam(sorted: &[Hypothesis], least_behind: bool) -> impl Iterator<Item = &Hypothesis> {
     let far = FAR_BEHIND * sorted.first().map_or(0.0, |first| first.search_mean);
     let near = sorted.iter().take_while(|h| h.search_mean <= far).count();
     let (first, behind) = sorted.split_at(near.min(BEAM));
@@ -362,7 +364,7 @@ fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
     let best_behind = behind.iter().min_by(|a, b| mean(a).total_cmp(&mean(b)));
     first
         .iter()
-        .chain(best_behind.filter(|best| mean(best) < least))
+        .chain(best_behind.filter(|best| least_behind && mean(best) < least))
 }
 
 /// The one that leaves least where it counts.

@@ -5,6 +5,7 @@ use super::block_errors::{
 };
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
+use super::strategy::Strategy;
 use crate::fitting::{Fit, FitProblem};
 
 /// A hypothesis that leaves up to this much more of the squared error may be as good.
@@ -92,7 +93,8 @@ impl Evaluator<'_> {
     /// The simplest part of a set that does as well as the whole, or the whole. What each further
     /// effect brings may pass for a gain where something else is missing, too.
     pub fn smallest_within(&self, whole: Hypothesis, sizes: &[Vec<Hypothesis>]) -> Hypothesis {
-        let parts = sizes.iter().flatten().filter(|part| {
+        let sizes = sizes.iter().filter(|_| self.does(Strategy::SmallestPart));
+        let parts = sizes.flatten().filter(|part| {
             part.set.len() < whole.set.len()
                 && whole.extends(part)
                 && !self.clearly_worse(part, &whole, &self.base)

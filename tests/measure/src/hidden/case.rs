@@ -4,6 +4,7 @@ use super::approximate::make_approximate;
 use super::family::Family;
 use super::{mujoco, robot};
 use handstand::challenge::{Bench, BenchEffect, Motions, bench, weakened_arm};
+use handstand::diagnose::Strategy;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -31,6 +32,8 @@ pub struct Case {
     pub hidden: Vec<&'static str>,
     /// Its seed.
     pub seed: u64,
+    /// Parts of the search that are left out.
+    pub skipped: Vec<Strategy>,
 }
 
 /// An effect that is hidden, with its values.
@@ -198,6 +201,7 @@ mod tests {
                 family,
                 hidden: vec![kind],
                 seed: 1,
+                skipped: Vec::new(),
             };
             case.without()
         };

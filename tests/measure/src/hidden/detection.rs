@@ -51,6 +51,7 @@ pub fn detection_limit(kind: &'static str, seed: u64) -> Result<DetectionLimit, 
         family: Family::Single,
         hidden: vec![kind],
         seed,
+        skipped: Vec::new(),
     };
     let Some(known) = effects::named(kind) else {
         return Err(format!("the library has no `{kind}`"));

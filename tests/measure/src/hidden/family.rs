@@ -284,6 +284,7 @@ impl Plan {
             family,
             hidden,
             seed,
+            skipped: Vec::new(),
         };
         let seeds = self.seed0..self.seed0 + self.seeds;
         let wanted = |kind: &&str| {

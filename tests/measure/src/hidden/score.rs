@@ -80,6 +80,7 @@ mod tests {
             family,
             hidden: hidden.to_vec(),
             seed: 1,
+            skipped: Vec::new(),
         }
     }
 

@@ -54,6 +54,7 @@ fn diagnosed(case: &Case, files: &Files) -> handstand::Result<Outcome> {
     );
     let options = DiagnoseOptions {
         without: case.without(),
+        skipped: case.skipped.clone(),
         ..DiagnoseOptions::default()
     };
     let begun = Instant::now();

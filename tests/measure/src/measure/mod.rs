@@ -1,5 +1,6 @@
 //! The chores that measure. A new one is a file, a line in [`Chore`] and an arm in [`Chores::run`].
 
+mod ablation;
 mod bench_firmware;
 mod bench_lab;
 mod bench_read;
@@ -52,6 +53,8 @@ enum Chore {
     Measured(measured::Args),
     /// Measure whether a limited time gives the verdict of the whole search
     Within(within::Args),
+    /// Measure what each part of the search for missing effects brings
+    Ablation(ablation::Args),
     /// Measure how often one proposed experiment settles an ambiguous diagnosis
     Next(next::Args),
     /// Walk the README's path on drawn rigs
@@ -96,6 +99,7 @@ impl Chores {
             Chore::Discover(args) => discover::run(args),
             Chore::Measured(args) => measured::run(args),
             Chore::Within(args) => within::run(args),
+            Chore::Ablation(args) => ablation::run(args),
             Chore::Next(args) => next::run(args),
             Chore::FirstHour(args) => first_hour::run(args),
             Chore::Real(args) => real::run(args),

@@ -65,6 +65,7 @@ fn cases(args: &Args) -> Vec<Case> {
         family: Family::Outside,
         hidden: vec![kind],
         seed: args.seed,
+        skipped: Vec::new(),
     };
     kinds.map(case).collect()
 }

@@ -46,6 +46,11 @@ const fn page(name: &'static str, cost: Cost, sample: Sample) -> MeasuredPage {
 /// All pages.
 pub const PAGES: &[MeasuredPage] = &[
     page(
+        "ablation",
+        Cost::Dear("hours; a part of the search in some ten minutes"),
+        Sample::Nothing("every row is of some sixty diagnoses, each done twice"),
+    ),
+    page(
         "bench-firmware",
         Cost::Dear("an hour; an ELF and simavr"),
         Sample::Nothing(

@@ -3,6 +3,7 @@
 use super::super::budget::{FINISH, LOOK, PARTNERS};
 use super::super::evaluator::Evaluator;
 use super::super::hypothesis::Hypothesis;
+use super::super::strategy::Strategy;
 use crate::fitting::{Candidate, InitialGuess, PredictionChange, ProjectedResidual, changes_like};
 use rayon::prelude::*;
 
@@ -52,7 +53,7 @@ impl Evaluator<'_> {
     /// on a bound: there a law is often another's, as Stribeck friction at the lowest speed is
     /// Coulomb friction.
     fn plainer(&self, whole: &Hypothesis, tried: &[Hypothesis]) -> Vec<Hypothesis> {
-        if !whole.rests_on_bound() {
+        if !whole.rests_on_bound() || !self.does(Strategy::PlainerPartners) {
             return Vec::new();
         }
         let leaving = (0..whole.set.len()).into_par_iter();
@@ -64,6 +65,7 @@ impl Evaluator<'_> {
     /// refitted from the values it has: alike joints need no values of their own.
     pub(super) fn merged(&self, whole: &Hypothesis) -> Vec<Hypothesis> {
         let at_all = self.candidates.iter().filter(|all| all.joint.is_none());
+        let at_all = at_all.filter(|_| self.does(Strategy::Merging));
         let merged = at_all.filter_map(|all| {
             let at = |joint| Candidate {
                 joint: Some(joint),
@@ -88,7 +90,8 @@ impl Evaluator<'_> {
         let Some(best) = hypotheses.first().cloned() else {
             return hypotheses;
         };
-        for leaving in 0..best.set.len().saturating_sub(1) {
+        let older = best.set.len().saturating_sub(1);
+        for leaving in (0..older).filter(|_| self.does(Strategy::Swaps)) {
             let rest = best.without(leaving, &self.base, &self.search, LOOK);
             let mut partners = self.partners(&rest, &hypotheses);
             partners.truncate(2);

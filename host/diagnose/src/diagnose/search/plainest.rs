@@ -3,6 +3,7 @@
 use super::super::budget::{FINISH, LOOK};
 use super::super::evaluator::Evaluator;
 use super::super::hypothesis::Hypothesis;
+use super::super::strategy::Strategy;
 use crate::fitting::{
     Candidate, FitOptions, FitProblem, ProjectedResidual, changes_like, intervals,
 };
@@ -13,8 +14,10 @@ impl Evaluator<'_> {
     /// of its kind that does as well: a spring so soft that it pulls alike everywhere is a constant
     /// force.
     pub(super) fn plainest(&self, mut whole: Hypothesis) -> Hypothesis {
-        while let Some(plainer) = self.plainer_law(&whole) {
-            whole = plainer;
+        if self.does(Strategy::PlainestLaw) {
+            while let Some(plainer) = self.plainer_law(&whole) {
+                whole = plainer;
+            }
         }
         whole
     }
@@ -94,14 +97,18 @@ fn vague_effects(whole: &Hypothesis, training: &FitProblem) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::super::tests::{evaluator, fitted};
+    use super::Strategy;
 
     /// The arm hangs a constant torque off; a soft spring about a far angle does the same.
     #[test]
     fn a_spring_that_pulls_alike_everywhere_is_a_constant_torque() {
-        let evaluator = evaluator(1, &["torque_offset"]);
+        let mut evaluator = evaluator(1, &["torque_offset"]);
         let mut spring = fitted(&evaluator, &["cable_spring"], [&[0.001, 60.0]]);
         evaluator.evaluate(&mut spring);
-        assert_eq!(evaluator.plainest(spring).names(), ["torque_offset@1"]);
+        let plainest = evaluator.plainest(spring.clone());
+        assert_eq!(plainest.names(), ["torque_offset@1"]);
+        evaluator.skipped = vec![Strategy::PlainestLaw];
+        assert_eq!(evaluator.plainest(spring).names(), ["cable_spring@1"]);
     }
 
     /// What a spring that is there does no constant torque does.

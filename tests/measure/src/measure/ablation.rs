@@ -1,0 +1,265 @@
+//! `cargo xtask ablation`: what each part of the search for missing effects brings, and costs.
+//!
+//! The same rigs are diagnosed with the whole search, and once without each of its parts. A part
+//! that no rig needs, and that costs time, does not pay.
+
+use super::page::Page;
+use clap::builder::PossibleValuesParser;
+use comfy_table::Table;
+use handstand::diagnose::Strategy;
+use handstand_measure::hidden::{Answer, Case, Family, Outcome, Plan, Truth, try_all};
+use handstand_measure::measured::Measured;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Measure what each part of the search for missing effects brings.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Only without these parts
+    #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(names()))]
+    parts: Vec<String>,
+    /// Without all of them at once
+    #[arg(long, requires = "parts")]
+    together: bool,
+    /// Rigs of these families
+    #[arg(long, value_delimiter = ',', default_value = "single,pairs,triples")]
+    #[arg(value_parser = PossibleValuesParser::new(families()))]
+    families: Vec<String>,
+    /// Rigs per effect; of pairs and triples ten sets per seed
+    #[arg(long, default_value_t = 1)]
+    seeds: u64,
+    /// First seed, from 1
+    #[arg(long, default_value_t = 31_001, value_parser = clap::value_parser!(u64).range(1..))]
+    seed0: u64,
+    /// Append every outcome to this file of JSON lines, and leave out what it holds
+    #[arg(long, value_name = "FILE")]
+    outcomes: Option<PathBuf>,
+    /// Try nothing: tabulate all that the file of outcomes holds
+    #[arg(long, requires = "outcomes")]
+    tabulate: bool,
+    /// Print every outcome as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    page: Page,
+}
+
+/// What was said of a rig without a part of the search.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Ablated {
+    /// The parts; empty of the whole search.
+    without: String,
+    outcome: Outcome,
+}
+
+fn names() -> Vec<&'static str> {
+    Strategy::ALL.into_iter().map(Strategy::name).collect()
+}
+
+fn families() -> Vec<&'static str> {
+    let all = handstand_measure::hidden::FAMILIES.into_iter();
+    all.map(Family::name).collect()
+}
+
+/// Whether every rig could be tried.
+pub fn run(args: &Args) -> bool {
+    match tried(args) {
+        Ok(all) => all,
+        Err(why) => {
+            eprintln!("{why}");
+            false
+        }
+    }
+}
+
+fn tried(args: &Args) -> Result<bool, String> {
+    let file = args.outcomes.as_deref();
+    let mut all = file.map_or(Ok(Vec::new()), outcomes)?;
+    let mut failed = 0;
+    if !args.tabulate {
+        let named = args.families.iter().filter_map(|name| Family::named(name));
+        let plan = Plan {
+            truth: Truth::Own,
+            families: named.collect(),
+            effects: Vec::new(),
+            seeds: args.seeds,
+            nominal: 10,
+            seed0: args.seed0,
+        };
+        let asked = args.parts.iter().filter_map(|name| Strategy::named(name));
+        let asked: Vec<Strategy> = asked.collect();
+        let asked = match asked.as_slice() {
+            [] => Strategy::ALL.to_vec(),
+            _ => asked,
+        };
+        let rows: Vec<&[Strategy]> = if args.together {
+            vec![&asked]
+        } else {
+            asked.chunks(1).collect()
+        };
+        for without in [&[][..]].into_iter().chain(rows) {
+            failed += try_without(without, &plan.cases(), file, &mut all);
+        }
+    }
+    let measured = measured(&all);
+    let json = args.json.then(|| json!(all));
+    let title = "What each part of the search brings";
+    let written = args.page.show(json, &measured, "ablation", title);
+    Ok(failed == 0 && written)
+}
+
+/// Tries the cases that are left without parts of the search, and keeps what was said; how many
+/// could not be tried.
+fn try_without(
+    without: &[Strategy],
+    cases: &[Case],
+    file: Option<&Path>,
+    all: &mut Vec<Ablated>,
+) -> usize {
+    let names: Vec<&str> = without.iter().map(|part| part.name()).collect();
+    let name = names.join(", ");
+    let is_known = |case: &Case| {
+        let mut same = all.iter().filter(|known| known.without == name);
+        same.any(|known| known.outcome.is_of(case))
+    };
+    let mut left: Vec<Case> = cases.to_vec();
+    left.retain(|case| !is_known(case));
+    for case in &mut left {
+        case.skipped = without.to_vec();
+    }
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let found = Mutex::new(Vec::new());
+    let (_, failed) = try_all(&left, None, [threads, threads], &|outcome| {
+        let ablated = Ablated {
+            without: name.clone(),
+            outcome: outcome.clone(),
+        };
+        eprintln!("{}", line(&ablated));
+        let kept = file.map_or(Ok(()), |file| append(file, &ablated));
+        if let Err(why) = kept {
+            eprintln!("the outcome is not kept: {why}");
+        }
+        if let Ok(mut found) = found.lock() {
+            found.push(ablated);
+        }
+    });
+    for (case, why) in &failed {
+        eprintln!("{}: {why}", case.hidden.join(" + "));
+    }
+    all.extend(found.into_inner().unwrap_or_default());
+    failed.len()
+}
+
+fn line(ablated: &Ablated) -> String {
+    let without = match ablated.without.as_str() {
+        "" => "whole search",
+        parts => parts,
+    };
+    let text = handstand_measure::hidden::line(&ablated.outcome);
+    format!("{without}: {text}")
+}
+
+/// The rigs tried without a part, each beside what the whole search said of it.
+fn beside<'a>(all: &'a [Ablated], part: &str) -> Vec<[&'a Outcome; 2]> {
+    let own = all.iter().filter(|own| own.without == part);
+    let pairs = own.filter_map(|own| {
+        let mut whole = all.iter().filter(|whole| whole.without.is_empty());
+        let is_same = |whole: &&Ablated| {
+            let (a, b) = (&whole.outcome, &own.outcome);
+            a.family == b.family && a.kinds == b.kinds && a.seed == b.seed
+        };
+        Some([&whole.find(is_same)?.outcome, &own.outcome])
+    });
+    pairs.collect()
+}
+
+fn is_reached(outcome: &Outcome) -> bool {
+    matches!(outcome.answer, Answer::Right | Answer::Equivalent)
+}
+
+fn measured(all: &[Ablated]) -> Measured {
+    let mut table = Table::new();
+    table.set_header([
+        "without",
+        "rigs",
+        "reached",
+        "with the whole search",
+        "wrong",
+        "with the whole search",
+        "lost",
+        "won",
+        "time / whole search",
+    ]);
+    let mut lines = Vec::new();
+    let mut parts: Vec<&str> = all.iter().map(|own| own.without.as_str()).collect();
+    parts.retain(|part| !part.is_empty());
+    parts.sort_unstable();
+    parts.dedup();
+    for part in parts {
+        let pairs = beside(all, part);
+        let count = |side: usize, is: &dyn Fn(&Outcome) -> bool| {
+            let sides = pairs.iter().filter(|pair| is(pair[side]));
+            sides.count().to_string()
+        };
+        let wrong = |outcome: &Outcome| outcome.answer == Answer::Wrong;
+        let seconds = |side: usize| pairs.iter().map(|pair| pair[side].seconds).sum::<f64>();
+        let (mut lost, mut won) = (0, 0);
+        for [whole, own] in &pairs {
+            let (had, has) = (is_reached(whole), is_reached(own));
+            lost += usize::from(had && !has);
+            won += usize::from(has && !had);
+            if had != has {
+                let (hidden, seed) = (own.hidden.join(" + "), own.seed);
+                let said = |outcome: &Outcome| {
+                    let sets = outcome.sets.iter().map(|set| set.join(" + "));
+                    let sets: Vec<String> = sets.collect();
+                    format!("{} {}", outcome.verdict, sets.join(" | "))
+                };
+                lines.push(format!(
+                    "without {part}: {}, seed {seed}, {hidden}: {}; whole search: {}",
+                    own.family.name(),
+                    said(own),
+                    said(whole)
+                ));
+            }
+        }
+        table.add_row([
+            part.to_string(),
+            pairs.len().to_string(),
+            count(1, &is_reached),
+            count(0, &is_reached),
+            count(1, &wrong),
+            count(0, &wrong),
+            lost.to_string(),
+            won.to_string(),
+            format!("{:.2}", seconds(1) / seconds(0)),
+        ]);
+    }
+    Measured::default().table(table).lines(lines)
+}
+
+/// The outcomes of a file of JSON lines; none where there is no file yet.
+fn outcomes(path: &Path) -> Result<Vec<Ablated>, String> {
+    let said = |why: String| format!("{}: {why}", path.display());
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(said(error.to_string())),
+    };
+    let read: Result<Vec<Ablated>, _> = text.lines().map(serde_json::from_str).collect();
+    read.map_err(|why| said(format!("no outcome: {why}")))
+}
+
+fn append(path: &Path, ablated: &Ablated) -> Result<(), String> {
+    let said = |why: String| format!("{}: {why}", path.display());
+    let text = serde_json::to_string(ablated).map_err(|why| said(why.to_string()))?;
+    let file = std::fs::OpenOptions::new()
+        .append(true)
+        .create(true)
+        .open(path);
+    let written = file.and_then(|mut file| writeln!(file, "{text}"));
+    written.map_err(|why| said(why.to_string()))
+}
