@@ -3,7 +3,8 @@
 //! The same rigs are diagnosed with the whole search, and once without each of its parts. A part
 //! that no rig needs, and that costs time, does not pay.
 
-use super::page::Page;
+use super::hidden::provenance;
+use super::page::{Page, print};
 use clap::builder::PossibleValuesParser;
 use comfy_table::Table;
 use handstand::diagnose::Strategy;
@@ -11,6 +12,7 @@ use handstand_measure::hidden::{Answer, Case, Family, Outcome, Plan, Truth, try_
 use handstand_measure::measured::Measured;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -106,8 +108,10 @@ fn tried(args: &Args) -> Result<bool, String> {
     }
     let measured = measured(&all);
     let json = args.json.then(|| json!(all));
-    let title = "What each part of the search brings";
-    let written = args.page.show(json, &measured, "ablation", title);
+    print(json, &measured);
+    let outcomes: Vec<Outcome> = all.into_iter().map(|own| own.outcome).collect();
+    let (from, title) = (provenance(&outcomes), "What each part of the search brings");
+    let written = args.page.keep(&from, &measured, "ablation", title);
     Ok(failed == 0 && written)
 }
 
@@ -238,7 +242,22 @@ fn measured(all: &[Ablated]) -> Measured {
             format!("{:.2}", seconds(1) / seconds(0)),
         ]);
     }
-    Measured::default().table(table).lines(lines)
+    let rigs = rigs(all);
+    Measured::default().table(table).line(rigs).lines(lines)
+}
+
+/// The families of the rigs, with their seeds.
+fn rigs(all: &[Ablated]) -> String {
+    let mut seeds = BTreeMap::<&str, BTreeSet<u64>>::new();
+    for own in all {
+        let of_family = seeds.entry(own.outcome.family.name()).or_default();
+        of_family.insert(own.outcome.seed);
+    }
+    let families = seeds.iter().map(|(family, seeds)| {
+        let ends = [seeds.first(), seeds.last()].map(|seed| seed.copied().unwrap_or(0));
+        format!("{family}, seeds {} to {}", ends[0], ends[1])
+    });
+    format!("Rigs: {}.", families.collect::<Vec<_>>().join("; "))
 }
 
 /// The outcomes of a file of JSON lines; none where there is no file yet.

@@ -163,7 +163,7 @@ fn measured(outcomes: &[Outcome]) -> Measured {
 }
 
 /// This run, with the versions that the outcomes are of.
-fn provenance(outcomes: &[Outcome]) -> Provenance {
+pub(super) fn provenance(outcomes: &[Outcome]) -> Provenance {
     let versions = outcomes.iter().map(|outcome| outcome.version.as_str());
     let versions: BTreeSet<&str> = versions.collect();
     let versions: Vec<&str> = versions.into_iter().collect();
