@@ -16,7 +16,7 @@ fn evaluated_and_stated(seed: u64, kind: &'static str, values: &[f64]) -> [(f64,
 /// Some of what a breaking away tells is worth less than what explanations are told apart by.
 #[test]
 fn stated_values_lie_on_a_lower_stair() {
-    let [evaluated, stated] = evaluated_and_stated(2, "stribeck", &[0.0394, 0.132]);
+    let [evaluated, stated] = evaluated_and_stated(3, "stribeck", &[0.0394, 0.132]);
     assert_eq!(evaluated.0, stated.0);
     assert!(stated.1 < evaluated.1 - 2.0, "{stated:?} {evaluated:?}");
 }
