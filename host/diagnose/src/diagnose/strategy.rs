@@ -1,6 +1,6 @@
 //! Parts of the search that can be left out, to measure what each brings.
 
-/// A part of the search. What each brings, and costs, is in `docs/measured/ablation.md`.
+/// A part of the search. `cargo xtask ablation` measures what it brings, and costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Strategy {
     /// A second search that spares no candidate, where the first explains nothing.

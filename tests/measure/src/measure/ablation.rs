@@ -3,17 +3,18 @@
 //! The same rigs are diagnosed with the whole search, and once without each of its parts. A part
 //! that no rig needs, and that costs time, does not pay.
 
-use super::hidden::provenance;
+use super::hidden::{provenance, style};
+use super::journal;
 use super::page::{Page, print};
 use clap::builder::PossibleValuesParser;
 use comfy_table::Table;
 use handstand::diagnose::Strategy;
 use handstand_measure::hidden::{Answer, Case, Family, Outcome, Plan, Truth, try_all};
 use handstand_measure::measured::Measured;
+use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -79,7 +80,7 @@ pub fn run(args: &Args) -> bool {
 
 fn tried(args: &Args) -> Result<bool, String> {
     let file = args.outcomes.as_deref();
-    let mut all = file.map_or(Ok(Vec::new()), outcomes)?;
+    let mut all = file.map_or(Ok(Vec::new()), journal::read)?;
     let mut failed = 0;
     if !args.tabulate {
         let named = args.families.iter().filter_map(|name| Family::named(name));
@@ -135,21 +136,24 @@ fn try_without(
         case.skipped = without.to_vec();
     }
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let bar = ProgressBar::new(left.len() as u64).with_style(style());
     let found = Mutex::new(Vec::new());
     let (_, failed) = try_all(&left, None, [threads, threads], &|outcome| {
         let ablated = Ablated {
             without: name.clone(),
             outcome: outcome.clone(),
         };
-        eprintln!("{}", line(&ablated));
-        let kept = file.map_or(Ok(()), |file| append(file, &ablated));
+        bar.suspend(|| eprintln!("{}", line(&ablated)));
+        bar.inc(1);
+        let kept = file.map_or(Ok(()), |file| journal::append(file, &ablated));
         if let Err(why) = kept {
-            eprintln!("the outcome is not kept: {why}");
+            bar.suspend(|| eprintln!("the outcome is not kept: {why}"));
         }
         if let Ok(mut found) = found.lock() {
             found.push(ablated);
         }
     });
+    bar.finish_and_clear();
     for (case, why) in &failed {
         eprintln!("{}: {why}", case.hidden.join(" + "));
     }
@@ -257,28 +261,9 @@ fn rigs(all: &[Ablated]) -> String {
         let ends = [seeds.first(), seeds.last()].map(|seed| seed.copied().unwrap_or(0));
         format!("{family}, seeds {} to {}", ends[0], ends[1])
     });
-    format!("Rigs: {}.", families.collect::<Vec<_>>().join("; "))
-}
-
-/// The outcomes of a file of JSON lines; none where there is no file yet.
-fn outcomes(path: &Path) -> Result<Vec<Ablated>, String> {
-    let said = |why: String| format!("{}: {why}", path.display());
-    let text = match std::fs::read_to_string(path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(said(error.to_string())),
-    };
-    let read: Result<Vec<Ablated>, _> = text.lines().map(serde_json::from_str).collect();
-    read.map_err(|why| said(format!("no outcome: {why}")))
-}
-
-fn append(path: &Path, ablated: &Ablated) -> Result<(), String> {
-    let said = |why: String| format!("{}: {why}", path.display());
-    let text = serde_json::to_string(ablated).map_err(|why| said(why.to_string()))?;
-    let file = std::fs::OpenOptions::new()
-        .append(true)
-        .create(true)
-        .open(path);
-    let written = file.and_then(|mut file| writeln!(file, "{text}"));
-    written.map_err(|why| said(why.to_string()))
+    format!(
+        "Rigs: {}. A row is measured by `--families` and `--parts` (several at once with \
+         `--together`), and kept in the file of `--outcomes`.",
+        families.collect::<Vec<_>>().join("; ")
+    )
 }

@@ -13,6 +13,7 @@
 //! not tried again: a run that was stopped goes on, and the files of shards, put together, make one
 //! table (`--tabulate`).
 
+use super::journal;
 use super::page::{Page, print};
 use clap::builder::PossibleValuesParser;
 use handstand::challenge::{KINDS, Motions};
@@ -25,9 +26,7 @@ use handstand_measure::measured::{Measured, Provenance};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::collections::BTreeSet;
-use std::fs::OpenOptions;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Measure how often hidden effects are named, missed and invented.
 #[derive(Debug, clap::Args)]
@@ -108,7 +107,10 @@ fn tried(args: &Args) -> Result<bool, String> {
         nominal: args.nominal,
         seed0: args.seed0,
     };
-    let mut old = args.outcomes.as_deref().map_or(Ok(Vec::new()), outcomes)?;
+    let mut old = args
+        .outcomes
+        .as_deref()
+        .map_or(Ok(Vec::new()), journal::read::<Outcome>)?;
     let mut cases = plan.cases();
     let mut number = 0;
     cases.retain(|_| {
@@ -123,8 +125,6 @@ fn tried(args: &Args) -> Result<bool, String> {
         cases.retain(|case| !old.iter().any(|outcome| outcome.is_of(case)));
     }
 
-    let mut file = args.outcomes.as_deref().map(appended).transpose()?;
-    let journal = std::sync::Mutex::new(file.as_mut());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let bar = ProgressBar::new(cases.len() as u64).with_style(style());
     let jobs = args.jobs.unwrap_or(threads);
@@ -132,9 +132,8 @@ fn tried(args: &Args) -> Result<bool, String> {
     let (new, failed) = try_all(&cases, rigs, [jobs, threads], &|outcome| {
         bar.suspend(|| eprintln!("{}", line(outcome)));
         bar.inc(1);
-        if let (Ok(mut journal), Ok(text)) = (journal.lock(), serde_json::to_string(outcome))
-            && let Some(Err(why)) = journal.as_mut().map(|file| writeln!(file, "{text}"))
-        {
+        let kept = (args.outcomes.as_deref()).map(|file| journal::append(file, outcome));
+        if let Some(Err(why)) = kept {
             bar.suspend(|| eprintln!("the outcome is not kept: {why}"));
         }
     });
@@ -260,29 +259,8 @@ impl RigPage {
     }
 }
 
-/// The outcomes of a file of JSON lines; none where there is no file yet.
-fn outcomes(path: &Path) -> Result<Vec<Outcome>, String> {
-    let said = |why: String| format!("{}: {why}", path.display());
-    let text = match std::fs::read_to_string(path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(said(error.to_string())),
-    };
-    let lines = text.lines().enumerate();
-    lines
-        .map(|(k, line)| {
-            serde_json::from_str(line)
-                .map_err(|why| said(format!("line {} is no outcome: {why}", k + 1)))
-        })
-        .collect()
-}
-
-fn appended(path: &Path) -> Result<std::fs::File, String> {
-    let file = OpenOptions::new().append(true).create(true).open(path);
-    file.map_err(|error| format!("{}: {error}", path.display()))
-}
-
-fn style() -> ProgressStyle {
+/// The bar of many diagnoses.
+pub(super) fn style() -> ProgressStyle {
     ProgressStyle::with_template("{bar:30} {pos} of {len}, {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
 }

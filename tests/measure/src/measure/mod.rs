@@ -11,6 +11,7 @@ mod detection;
 mod discover;
 mod first_hour;
 mod hidden;
+mod journal;
 mod measured;
 mod next;
 mod page;

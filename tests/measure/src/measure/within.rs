@@ -5,6 +5,7 @@
 //! it takes, one after the other, each on all threads. Fails when fewer than eight in ten verdicts
 //! agree, or an answer comes more than two seconds late.
 
+use super::journal;
 use super::page::Page;
 use comfy_table::Table;
 use handstand::challenge::KINDS;
@@ -12,8 +13,7 @@ use handstand::study::Shard;
 use handstand_measure::hidden::{Case, Family, Truth, Within, try_within};
 use handstand_measure::measured::Measured;
 use serde_json::json;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Share of the verdicts that must agree.
 const TARGET: f64 = 0.8;
@@ -71,7 +71,10 @@ fn cases(args: &Args) -> Vec<Case> {
 }
 
 fn tried(args: &Args) -> Result<bool, String> {
-    let mut all = args.outcomes.as_deref().map_or(Ok(Vec::new()), outcomes)?;
+    let mut all = args
+        .outcomes
+        .as_deref()
+        .map_or(Ok(Vec::new()), journal::read)?;
     let is_of = |outcome: &Within, case: &Case| {
         let same = outcome.hidden == case.hidden && outcome.seed == case.seed;
         same && outcome.limit_s == args.limit
@@ -91,7 +94,7 @@ fn tried(args: &Args) -> Result<bool, String> {
             Ok(outcome) => {
                 eprintln!("{}", line(&outcome));
                 if let Some(path) = &args.outcomes {
-                    append(path, &outcome)?;
+                    journal::append(path, &outcome)?;
                 }
                 all.push(outcome);
             }
@@ -163,28 +166,4 @@ fn table(outcomes: &[Within]) -> Table {
         );
     }
     table
-}
-
-/// The outcomes of a file of JSON lines; none where there is no file yet.
-fn outcomes(path: &Path) -> Result<Vec<Within>, String> {
-    let said = |why: String| format!("{}: {why}", path.display());
-    let text = match std::fs::read_to_string(path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(said(error.to_string())),
-    };
-    let lines = text.lines().map(serde_json::from_str);
-    let read: Result<Vec<Within>, _> = lines.collect();
-    read.map_err(|why| said(format!("no outcome: {why}")))
-}
-
-fn append(path: &Path, outcome: &Within) -> Result<(), String> {
-    let said = |why: String| format!("{}: {why}", path.display());
-    let text = serde_json::to_string(outcome).map_err(|why| said(why.to_string()))?;
-    let file = std::fs::OpenOptions::new()
-        .append(true)
-        .create(true)
-        .open(path);
-    let written = file.and_then(|mut file| writeln!(file, "{text}"));
-    written.map_err(|why| said(why.to_string()))
 }

@@ -177,12 +177,7 @@ fn say_drives(pairs: &[Pair], said: &mut Vec<Guess>) {
         (!names.is_empty()).then(|| quoted(names))
     };
     if let Some(names) = of(&["position", "speed", "duty"]) {
-        let servo = ServoFigures::guessed("position");
-        let figures = format!(
-            "of {names}: {} N m at standstill, {} rad/s without load, a rotor of {} kg m^2 at the \
-             joint",
-            servo.stall_torque_nm, servo.no_load_speed_rad_s, servo.armature_kg_m2
-        );
+        let figures = format!("of {names}: {}", ServoFigures::guessed("position"));
         let why = "a guess: its data sheet says, or `handstand fit` estimates them";
         said.push(Guess::new("motors", figures, why));
     }

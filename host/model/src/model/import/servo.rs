@@ -2,6 +2,7 @@
 
 use super::JointDrives;
 use super::tree::{JointMotion, Remark, TreeDrive, TreeJoint};
+use std::fmt;
 
 /// A servo that drives a joint where the robot's file has no drive for its input.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +30,16 @@ impl ServoFigures {
     }
 }
 
+impl fmt::Display for ServoFigures {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "{} N m at standstill, {} rad/s without load, a rotor of {} kg m^2 at the joint",
+            self.stall_torque_nm, self.no_load_speed_rad_s, self.armature_kg_m2
+        )
+    }
+}
+
 /// Gives all joints the drive that is asked for, and notes it; addresses of the values that are
 /// guesses.
 pub(super) fn all_driven<'a>(
@@ -48,12 +59,8 @@ pub(super) fn all_driven<'a>(
     }
     if !names.is_empty() && drive != "torque" {
         let why = format!(
-            "of {}: {} N m at standstill, {} rad/s without load, a rotor of {} kg m^2 at the \
-             joint, a guess: the data sheet says, or `handstand fit` estimates them",
-            names.join(", "),
-            servo.stall_torque_nm,
-            servo.no_load_speed_rad_s,
-            servo.armature_kg_m2
+            "of {}: {servo}, a guess: the data sheet says, or `handstand fit` estimates them",
+            names.join(", ")
         );
         notes.push(Remark::new("motors", None, why));
     }
