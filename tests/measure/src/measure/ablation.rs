@@ -9,7 +9,9 @@ use super::page::{Page, print};
 use clap::builder::PossibleValuesParser;
 use comfy_table::Table;
 use handstand::diagnose::Strategy;
-use handstand_measure::hidden::{Answer, Case, Family, Outcome, Plan, Truth, try_all};
+use handstand_measure::hidden::{
+    Answer, Case, Family, Outcome, Plan, Truth, install_mujoco, try_all,
+};
 use handstand_measure::measured::Measured;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
@@ -21,6 +23,9 @@ use std::sync::Mutex;
 /// Measure what each part of the search for missing effects brings.
 #[derive(Debug, clap::Args)]
 pub struct Args {
+    /// Who makes the logs
+    #[arg(long, value_enum, default_value = "own")]
+    truth: Truth,
     /// Only without these parts
     #[arg(long, value_delimiter = ',', value_parser = PossibleValuesParser::new(names()))]
     parts: Vec<String>,
@@ -79,13 +84,16 @@ pub fn run(args: &Args) -> bool {
 }
 
 fn tried(args: &Args) -> Result<bool, String> {
+    if args.truth == Truth::Mujoco && !install_mujoco() {
+        return Err("MuJoCo cannot be installed".to_string());
+    }
     let file = args.outcomes.as_deref();
     let mut all = file.map_or(Ok(Vec::new()), journal::read)?;
     let mut failed = 0;
     if !args.tabulate {
         let named = args.families.iter().filter_map(|name| Family::named(name));
         let plan = Plan {
-            truth: Truth::Own,
+            truth: args.truth,
             families: named.collect(),
             effects: Vec::new(),
             seeds: args.seeds,
@@ -170,23 +178,12 @@ fn line(ablated: &Ablated) -> String {
     format!("{without}: {text}")
 }
 
-/// The rigs tried without a part, each beside what the whole search said of it.
-fn beside<'a>(all: &'a [Ablated], part: &str) -> Vec<[&'a Outcome; 2]> {
-    let own = all.iter().filter(|own| own.without == part);
-    let pairs = own.filter_map(|own| {
-        let mut whole = all.iter().filter(|whole| whole.without.is_empty());
-        let is_same = |whole: &&Ablated| {
-            let (a, b) = (&whole.outcome, &own.outcome);
-            a.family == b.family && a.kinds == b.kinds && a.seed == b.seed
-        };
-        Some([&whole.find(is_same)?.outcome, &own.outcome])
-    });
-    pairs.collect()
-}
-
 fn is_reached(outcome: &Outcome) -> bool {
     matches!(outcome.answer, Answer::Right | Answer::Equivalent)
 }
+
+/// What a row of the table is of: parts left out, and rigs of a family.
+type Row<'a> = (&'a str, String);
 
 fn measured(all: &[Ablated]) -> Measured {
     let mut table = Table::new();
@@ -201,60 +198,105 @@ fn measured(all: &[Ablated]) -> Measured {
         "won",
         "time / whole search",
     ]);
-    let mut lines = Vec::new();
-    let mut parts: Vec<&str> = all.iter().map(|own| own.without.as_str()).collect();
-    parts.retain(|part| !part.is_empty());
-    parts.sort_unstable();
-    parts.dedup();
-    for part in parts {
-        let pairs = beside(all, part);
-        let count = |side: usize, is: &dyn Fn(&Outcome) -> bool| {
-            let sides = pairs.iter().filter(|pair| is(pair[side]));
-            sides.count().to_string()
-        };
-        let wrong = |outcome: &Outcome| outcome.answer == Answer::Wrong;
-        let seconds = |side: usize| pairs.iter().map(|pair| pair[side].seconds).sum::<f64>();
-        let (mut lost, mut won) = (0, 0);
-        for [whole, own] in &pairs {
-            let (had, has) = (is_reached(whole), is_reached(own));
-            lost += usize::from(had && !has);
-            won += usize::from(has && !had);
-            if had != has {
-                let (hidden, seed) = (own.hidden.join(" + "), own.seed);
-                let said = |outcome: &Outcome| {
-                    let sets = outcome.sets.iter().map(|set| set.join(" + "));
-                    let sets: Vec<String> = sets.collect();
-                    format!("{} {}", outcome.verdict, sets.join(" | "))
-                };
-                lines.push(format!(
-                    "without {part}: {}, seed {seed}, {hidden}: {}; whole search: {}",
-                    own.family.name(),
-                    said(own),
-                    said(whole)
-                ));
-            }
+    let mut measured = Measured::default();
+    let mut rows = BTreeMap::<Row, Vec<[&Outcome; 2]>>::new();
+    for own in all.iter().filter(|own| !own.without.is_empty()) {
+        if let Some(whole) = whole_of(all, own) {
+            let row = (own.without.as_str(), family_of(&own.outcome));
+            rows.entry(row).or_default().push([whole, &own.outcome]);
         }
-        table.add_row([
-            part.to_string(),
-            pairs.len().to_string(),
-            count(1, &is_reached),
-            count(0, &is_reached),
-            count(1, &wrong),
-            count(0, &wrong),
-            lost.to_string(),
-            won.to_string(),
-            format!("{:.2}", seconds(1) / seconds(0)),
-        ]);
     }
-    let rigs = rigs(all);
-    Measured::default().table(table).line(rigs).lines(lines)
+    let mut lines = Vec::new();
+    let mut several = BTreeMap::<&str, usize>::new();
+    for ((without, family), pairs) in &rows {
+        let next = several.len() + 1;
+        let name = match without.split(", ").count() {
+            1 => (*without).to_string(),
+            count => {
+                let note = several.entry(without).or_insert(next);
+                format!("{count} parts ({note})")
+            }
+        };
+        table.add_row(row(&name, family, pairs));
+        lines.extend(pairs.iter().filter_map(|pair| differing(&name, pair)));
+    }
+    measured = measured.table(table);
+    for (parts, note) in several {
+        measured = measured.line(format!("({note}): {parts}"));
+    }
+    measured.line(rigs(all)).lines(lines)
+}
+
+/// What the whole search said of the rig that was tried without a part.
+fn whole_of<'a>(all: &'a [Ablated], own: &Ablated) -> Option<&'a Outcome> {
+    let b = &own.outcome;
+    let is_same = |a: &Outcome| {
+        a.truth == b.truth && a.family == b.family && a.kinds == b.kinds && a.seed == b.seed
+    };
+    let mut whole = all.iter().filter(|whole| whole.without.is_empty());
+    let whole = whole.find(|whole| is_same(&whole.outcome))?;
+    Some(&whole.outcome)
+}
+
+/// The family of a rig, and who made its logs where that is another than the challenges.
+fn family_of(outcome: &Outcome) -> String {
+    let family = outcome.family.name();
+    match outcome.truth {
+        Truth::Own => family.to_string(),
+        Truth::Mujoco => format!("{family} (MuJoCo)"),
+        Truth::Robot => format!("{family} (virtual robot)"),
+    }
+}
+
+/// How the outcomes without a part compare with those of the whole search, which come first.
+fn row(without: &str, family: &str, pairs: &[[&Outcome; 2]]) -> [String; 9] {
+    let count = |side: usize, is: &dyn Fn(&Outcome) -> bool| {
+        let sides = pairs.iter().filter(|pair| is(pair[side]));
+        sides.count().to_string()
+    };
+    let wrong = |outcome: &Outcome| outcome.answer == Answer::Wrong;
+    let seconds = |side: usize| pairs.iter().map(|pair| pair[side].seconds).sum::<f64>();
+    let turned = |to: bool| {
+        let turned = pairs.iter().map(|pair| pair.map(is_reached));
+        turned.filter(|pair| *pair == [!to, to]).count().to_string()
+    };
+    [
+        without.to_string(),
+        format!("{} {family}", pairs.len()),
+        count(1, &is_reached),
+        count(0, &is_reached),
+        count(1, &wrong),
+        count(0, &wrong),
+        turned(false),
+        turned(true),
+        format!("{:.2}", seconds(1) / seconds(0)),
+    ]
+}
+
+/// What both said of a rig that only one of them explained rightly.
+fn differing(without: &str, [whole, own]: &[&Outcome; 2]) -> Option<String> {
+    let said = |outcome: &Outcome| {
+        let sets = outcome.sets.iter().map(|set| set.join(" + "));
+        let sets: Vec<String> = sets.collect();
+        format!("{} {}", outcome.verdict, sets.join(" | "))
+    };
+    (is_reached(whole) != is_reached(own)).then(|| {
+        format!(
+            "without {without}: {}, seed {}, {}: {}; whole search: {}",
+            family_of(own),
+            own.seed,
+            own.hidden.join(" + "),
+            said(own),
+            said(whole)
+        )
+    })
 }
 
 /// The families of the rigs, with their seeds.
 fn rigs(all: &[Ablated]) -> String {
-    let mut seeds = BTreeMap::<&str, BTreeSet<u64>>::new();
+    let mut seeds = BTreeMap::<String, BTreeSet<u64>>::new();
     for own in all {
-        let of_family = seeds.entry(own.outcome.family.name()).or_default();
+        let of_family = seeds.entry(family_of(&own.outcome)).or_default();
         of_family.insert(own.outcome.seed);
     }
     let families = seeds.iter().map(|(family, seeds)| {
