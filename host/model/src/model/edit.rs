@@ -195,7 +195,10 @@ fn owner<'a>(
     model: &Model,
 ) -> Option<&'a mut dyn TableLike> {
     match path {
-        ParameterPath::Link { index, .. } => tables(document.get_mut("link")?).nth(index),
+        ParameterPath::Link { index, .. } => match &model.robot {
+            Some(robot) => robot::link_named(document, robot.links.get(index)?),
+            None => tables(document.get_mut("link")?).nth(index),
+        },
         ParameterPath::Joint { index, .. } => tables(document.get_mut("joint")?).nth(index),
         ParameterPath::Effect { id, joint, .. } => tables(document.get_mut("effect")?).find(|t| {
             // Neither a number stands there where it acts on all, nor where it acts on the rig.

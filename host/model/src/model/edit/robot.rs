@@ -1,9 +1,9 @@
-//! Which robot's file a model names.
+//! Which robot's file a model names, and which of its links.
 
-use super::document;
+use super::{document, tables};
 use crate::error::Result;
 use std::path::Path;
-use toml_edit::{DocumentMut, Item, Value};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
 /// The robot's file that a model of a robot in space names; none of another text.
 pub fn robot_file(text: &str) -> Option<String> {
@@ -26,6 +26,31 @@ pub fn set_robot_file(text: &str, path: &Path, robot: &str) -> Result<String> {
         *value.decor_mut() = decor;
     }
     Ok(document.to_string())
+}
+
+/// The table of a robot's link; a new one where its values are still those of the robot's file. Of
+/// several of its name the last, which has the values.
+pub(super) fn link_named<'a>(
+    document: &'a mut DocumentMut,
+    name: &str,
+) -> Option<&'a mut dyn TableLike> {
+    let links = document
+        .entry("link")
+        .or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
+    let is_own = |table: &mut dyn TableLike| table.get("name").and_then(Item::as_str) == Some(name);
+    let known = tables(links).position(is_own);
+    let index = known.unwrap_or_else(|| tables(links).count());
+    if known.is_none() {
+        let mut table = Table::new();
+        table.decor_mut().set_prefix("\n");
+        table.insert("name", toml_edit::value(name));
+        match links {
+            Item::ArrayOfTables(tables) => tables.push(table),
+            Item::Value(Value::Array(array)) => array.push(table.into_inline_table()),
+            _ => return None,
+        }
+    }
+    tables(links).nth(index)
 }
 
 #[cfg(test)]

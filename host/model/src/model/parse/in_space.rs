@@ -2,6 +2,7 @@
 
 use super::super::field::LinkField;
 use super::super::reader::Table;
+use super::super::suggest::suggest;
 use super::super::{Joint, Link, Model, RateSensor, Robot};
 use super::{EITHER_SIGN, NOT_NEGATIVE, drive};
 use crate::dynamics::{SlideAxis, SpatialEquations};
@@ -10,10 +11,11 @@ use crate::error::Result;
 
 /// The links: what no `[[link]]` says is as in the robot's file.
 pub(super) fn links(root: &Table, robot: &Robot) -> Result<Vec<Link>> {
-    let tables = named(root, "link", &robot.links, true)?;
-    let links = (0..robot.links.len()).map(|index| {
+    let tables = root.tables("link")?;
+    let tables = by_name(&tables, &robot.links)?;
+    let links = tables.iter().enumerate().map(|(index, table)| {
         let file = robot.link(index);
-        let Some(table) = tables.get(index) else {
+        let Some(table) = table else {
             return Ok(file);
         };
         table.only(&["name", "mass_kg", "com_m", "inertia_kg_m2"])?;
@@ -32,7 +34,7 @@ pub(super) fn links(root: &Table, robot: &Robot) -> Result<Vec<Link>> {
 
 /// The joints: the robot's file says how they move, the model what drives them.
 pub(super) fn joints(root: &Table, robot: &Robot) -> Result<Vec<Joint>> {
-    let tables = named(root, "joint", &robot.joints, false)?;
+    let tables = one_each(root, &robot.joints)?;
     let joints = tables.iter().zip(&robot.tree.links).map(|(table, link)| {
         let axis = if link.slides {
             Axis::Slide
@@ -96,21 +98,38 @@ fn stiff(model: &Model) -> Option<String> {
     })
 }
 
-/// The tables of this kind, one for each of these names and in their order; or none at all.
-fn named<'a>(
-    root: &Table<'a>,
-    what: &str,
-    names: &[String],
-    may_lack: bool,
-) -> Result<Vec<Table<'a>>> {
-    let tables = root.tables(what)?;
-    if tables.is_empty() && may_lack {
-        return Ok(tables);
+/// Of each of these links the table that names it, if there is one. Where several joints move one
+/// body their links have its name, and the last one its mass: fewer tables are those of the last.
+fn by_name<'t, 'a>(
+    tables: &'t [Table<'a>],
+    links: &[String],
+) -> Result<Vec<Option<&'t Table<'a>>>> {
+    let mut found = vec![None; links.len()];
+    for table in tables.iter().rev() {
+        let name = table.required_text("name")?;
+        let mut own = (0..links.len()).rev().filter(|link| links[*link] == name);
+        match own.find(|link| found[*link].is_none()) {
+            Some(link) => found[link] = Some(table),
+            None if links.iter().any(|link| link == name) => {
+                let what = format!("link `{name}` has another table");
+                return Err(table.bad("name", what, "write one table for each link"));
+            }
+            None => {
+                let what = format!("no joint of the robot moves a link `{name}`");
+                return Err(table.bad("name", what, suggest(name, links)));
+            }
+        }
     }
+    Ok(found)
+}
+
+/// The `[[joint]]` tables, one for each of these names and in their order.
+fn one_each<'a>(root: &Table<'a>, names: &[String]) -> Result<Vec<Table<'a>>> {
+    let tables = root.tables("joint")?;
     if tables.len() != names.len() {
         let (found, wanted) = (tables.len(), names.len());
         return Err(tables.get(wanted).unwrap_or(root).bad_table(
-            format!("{found} [[{what}]] tables for {wanted} joints of the robot"),
+            format!("{found} [[joint]] tables for {wanted} joints of the robot"),
             format!(
                 "one each, in this order: {}; hold others in [rig] locked",
                 names.join(", ")
@@ -122,8 +141,8 @@ fn named<'a>(
         if name != wanted {
             return Err(table.bad(
                 "name",
-                format!("{what} `{name}` is not the robot's `{wanted}`"),
-                "name joints and links in the order of the robot's file",
+                format!("joint `{name}` is not the robot's `{wanted}`"),
+                "name joints in the order of the robot's file",
             ));
         }
     }

@@ -1,3 +1,4 @@
+use super::super::edit::set_values;
 use super::super::{LinkField, Model, ParameterPath};
 use std::path::{Path, PathBuf};
 
@@ -108,6 +109,62 @@ fn the_models_values_take_the_place_of_the_files() {
         field: LinkField::Com,
     };
     assert_eq!(mast.get(&model), Some(0.2));
+}
+
+/// A file lists the links that differ from the robot's, in any order; a fit lists one more.
+#[test]
+fn links_are_told_by_their_names() {
+    let (_folder, file) = folder();
+    let listed = |tables: &str| {
+        MODEL.replace(
+            "[[joint]]\nname = \"slew\"",
+            &format!("{tables}[[joint]]\nname = \"slew\""),
+        )
+    };
+    let masses = |text: &str| {
+        let model = Model::parse(text, &file).unwrap();
+        [0, 1, 2].map(|index| model.links[index].mass_kg)
+    };
+    let [mast, boom, cart] = masses(MODEL);
+    let text = listed("[[link]]\nname = \"boom\"\nmass_kg = 1.5\n");
+    assert_eq!(masses(&text), [mast, 1.5, cart]);
+    let both = listed(
+        "[[link]]\nname = \"boom\"\nmass_kg = 1.5\n[[link]]\nname = \"mast\"\nmass_kg = 9.0\n",
+    );
+    assert_eq!(masses(&both), [9.0, 1.5, cart]);
+
+    let set = |text: &str, address: &str, value: f64| {
+        let path = address.parse().unwrap();
+        set_values(text, &file, &[(path, value)]).unwrap()
+    };
+    assert_eq!(
+        masses(&set(MODEL, "link2.mass_kg", 1.25)),
+        [mast, 1.25, cart]
+    );
+    let inline = MODEL.replace(
+        "[rig]",
+        "link = [{ name = \"mast\", mass_kg = 8.0 }]\n[rig]",
+    );
+    assert_eq!(
+        masses(&set(&inline, "link3.mass_kg", 0.7)),
+        [8.0, boom, 0.7]
+    );
+    let mut text = set(&text, "link1.mass_kg", 7.0);
+    text = set(&text, "link2.mass_kg", 1.75);
+    assert_eq!(masses(&text), [7.0, 1.75, cart]);
+    assert_eq!(text.matches("[[link]]").count(), 2);
+
+    for (tables, told) in [
+        ("[[link]]\nname = \"bom\"\n", "moves a link `bom`"),
+        ("[[link]]\nmass_kg = 1.0\n", "lacks `name`"),
+        (
+            "[[link]]\nname = \"boom\"\n[[link]]\nname = \"boom\"\n",
+            "`boom` has another table",
+        ),
+    ] {
+        let found = refused(&listed(tables), &file);
+        assert!(found.contains(told), "{told}: {found}");
+    }
 }
 
 #[test]
