@@ -1,9 +1,9 @@
 //! A refitted model, for people and programs.
 
 use super::table::{columns_of, table_of};
-use crate::fitting::{FittedValue, Refitted, in_windows};
+use crate::fitting::{BaseParameters, FittedValue, Refitted, in_windows};
 use crate::model::JointNames;
-use crate::output::number::{exact, given};
+use crate::output::number::{exact, given, measured, short};
 use crate::output::table::within_width;
 use serde_json::{Value, json};
 
@@ -55,7 +55,35 @@ fn warnings(refitted: &Refitted) -> Vec<String> {
         warnings.push("the fit had not come to rest when its iterations ran out".to_string());
     }
     warnings.extend(refitted.unobserved.iter().cloned());
+    warnings.extend(told_together(&refitted.together));
     warnings
+}
+
+/// Which values are told only together, what is told of them, and what to do.
+fn told_together(together: &BaseParameters) -> Option<String> {
+    if together.held.is_empty() {
+        return None;
+    }
+    let counted = |(path, share): &(String, f64)| {
+        let sign = if *share < 0.0 { " - " } else { " + " };
+        format!("{sign}{} {path}", short(share.abs()))
+    };
+    let sums = together.told.iter().map(|own| {
+        let (first, held) = own
+            .terms
+            .split_first()
+            .map_or((String::new(), &[][..]), |(f, h)| (f.0.clone(), h));
+        let held: String = held.iter().map(counted).collect();
+        let value = measured(own.value, own.low, own.high, &own.unit);
+        format!("  {first}{held} = {value}\n")
+    });
+    let held = together.held.iter().map(|path| format!("`{path}`"));
+    let held = held.collect::<Vec<_>>().join(", ");
+    Some(format!(
+        "these motions tell of some values only sums:\n{}  hold {held} at what is known of them (not \
+         free, or with their `[uncertainty]`), and the others are told",
+        sums.collect::<String>()
+    ))
 }
 
 /// A refitted model for programs.
@@ -67,6 +95,35 @@ pub fn refitted_json(refitted: &Refitted) -> Value {
         "windows": refitted.windows,
         "shorter_step_s": refitted.shorter_step_s,
         "converged": refitted.converged,
+        "together": refitted.together,
         "warnings": warnings(refitted),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::told_together;
+    use crate::fitting::{BaseParameter, BaseParameters};
+
+    #[test]
+    fn sums_that_are_told_stand_below_each_other() {
+        let sum = BaseParameter {
+            terms: vec![("link2.mass_kg".into(), 1.0), ("link3.com_m".into(), -0.25)],
+            unit: "kg".into(),
+            value: 0.2,
+            low: 0.19,
+            high: 0.21,
+        };
+        let together = BaseParameters {
+            held: vec!["link3.com_m".into()],
+            told: vec![sum],
+        };
+        let text = told_together(&together).unwrap();
+        assert!(
+            text.contains("\n  link2.mass_kg - 0.250 link3.com_m = 0.200 kg"),
+            "{text}"
+        );
+        assert!(text.contains("hold `link3.com_m`"), "{text}");
+        assert_eq!(told_together(&BaseParameters::default()), None);
+    }
 }

@@ -85,6 +85,7 @@ pub fn refuse(why: &Undetermined, names: &JointNames, console: &Console) -> Resu
         "refused": why.to_string(),
         "blind": why.blind,
         "mixed": why.mixed,
+        "hold": why.hold,
     });
     console.result(&data, || names.in_text(&show::undetermined(why)))?;
     Ok(ExitStatus::Refused)

@@ -30,12 +30,18 @@ pub fn wide_table() -> Table {
 
 /// Values that cannot be had, for people.
 pub fn undetermined(refused: &Undetermined) -> String {
-    let measured = refused.mixed.iter().find_map(|path| how_to_measure(path));
+    let hold = match refused.hold.as_slice() {
+        [] => refused.mixed.get(..1).unwrap_or_default(),
+        hold => hold,
+    };
+    let measured = hold.iter().find_map(|path| how_to_measure(path));
     let measured = measured.map_or(String::new(), |how| format!(" ({how})"));
-    let remedy = if refused.mixed.is_empty() {
-        "Fit fewer values, or record motions that show them.".to_string()
-    } else {
-        format!("Measure one of them by itself{measured}, and leave it out of the fit.")
+    let remedy = match hold {
+        [] => "Fit fewer values, or record motions that show them.".to_string(),
+        [..] => format!(
+            "Leave `{}` out of the fit, at what is known of it{measured}: the others are told then.",
+            hold.join("`, `")
+        ),
     };
     format!("refused: {refused}; nothing is written. {remedy}")
 }

@@ -9,6 +9,7 @@
 mod add;
 mod added;
 mod assumed;
+mod base_parameters;
 mod before_log;
 mod broyden;
 mod candidate;
@@ -62,6 +63,7 @@ mod windows;
 pub use add::{
     Addition, Unhelpful, add_effects, add_effects_from, candidates_named, with_refitted,
 };
+pub use base_parameters::{BaseParameter, BaseParameters};
 pub use candidate::{Candidate, effect_ids, effect_named};
 pub use covariance::{Interval, intervals, intervals_of};
 pub use data::FitProblem;

@@ -5,6 +5,7 @@
 mod tests;
 
 use super::added::AddedEffects;
+use super::base_parameters::{BaseParameters, base_parameters, values_to_hold};
 use super::data::FitProblem;
 use super::error_reduction::ErrorReduction;
 use super::fit::{Fit, FitOptions};
@@ -46,6 +47,8 @@ pub struct Refitted {
     pub windows: Vec<MotionWindow>,
     /// What the logs cannot observe of the joints' motion, a sentence each.
     pub unobserved: Vec<String>,
+    /// Values that the motions tell only together.
+    pub together: BaseParameters,
     /// Whether the search met its tolerance before its iterations ran out.
     pub converged: bool,
 }
@@ -59,6 +62,8 @@ pub struct Undetermined {
     pub blind: Vec<String>,
     /// Parameters of which these motions tell only a mixture, where that is known.
     pub mixed: Vec<String>,
+    /// Parameters to hold at what is known of them, with which these motions tell the others.
+    pub hold: Vec<String>,
 }
 
 fn undetermined(blind: &[String], mixed: &[String]) -> String {
@@ -153,6 +158,10 @@ pub(super) fn told_apart(found: &Fit) -> Result<(), Undetermined> {
         Err(Undetermined {
             blind: Vec::new(),
             mixed: mixed.iter().map(ToString::to_string).collect(),
+            hold: values_to_hold(found)
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
         })
     }
 }
@@ -291,6 +300,7 @@ impl Refit<'_> {
                     ..fitted
                 },
             },
+            together: base_parameters(model, &found, data),
             free: found.free,
             windows,
             unobserved,

@@ -99,6 +99,7 @@ fn undetermined_by(found: &Fit, data: &FitProblem) -> Undetermined {
     Undetermined {
         blind: blind.iter().map(ToString::to_string).collect(),
         mixed: Vec::new(),
+        hold: Vec::new(),
     }
 }
 

@@ -115,6 +115,47 @@ fn per_cent_of_a_calibrated_range_are_angles() {
     );
 }
 
+/// The masses of a robot whose model leaves its links to the robot's file: what of them is told is
+/// told as sums, and what is written is read again.
+#[test]
+fn fitted_masses_are_written_by_their_links_names() {
+    let bench = bench("v3.0", names(), Written::Rad);
+    done(bench.run("init d --robot robot.urdf --unit rad -o m.toml"));
+    let model = bench.get("m.toml");
+    let of_file = |table: &&str| {
+        let derived = ["[link", "uncertainty", "fit"];
+        !derived.iter().any(|name| table.starts_with(name))
+    };
+    let kept: Vec<&str> = model.split("\n[").filter(of_file).collect();
+    bench.put("of_file.toml", kept.join("\n["));
+    let fit = |held: &str| {
+        let free = [
+            "mast.mass_kg",
+            "mast.com_m",
+            "boom.mass_kg",
+            "boom.com_m",
+            "jaw.mass_kg",
+        ];
+        let free = free.map(|own| format!("link.{own}"));
+        let free = free.iter().filter(|own| *own != held);
+        let free: String = free.map(|own| format!(" --free {own}")).collect();
+        bench.run(&format!("fit of_file.toml d{free} -o fitted.toml"))
+    };
+    // A mast that slews about the vertical shows its moment alone.
+    let refused = fit("");
+    assert_eq!(refused.code, Some(1), "{refused:?}");
+    let told = "Leave `link.mast.mass_kg` out of the fit";
+    assert!(refused.stdout.contains(told), "{refused:?}");
+    let found = done(fit("link.mast.mass_kg")).stdout;
+    assert!(!found.contains("only sums"), "{found}");
+    let fitted = bench.get("fitted.toml");
+    for link in ["mast", "boom", "jaw"] {
+        let table = format!("[[link]]\nname = \"{link}\"\n");
+        assert_eq!(fitted.matches(&table).count(), 1, "{fitted}");
+    }
+    assert_right(&bench, "fitted.toml", "d");
+}
+
 /// A Dynamixel with `drive_mode` 1 turns its count round itself, so LeRobot does not.
 #[test]
 fn the_drive_mode_counts_on_feetech_alone() {

@@ -129,6 +129,7 @@ fn values_that_a_free_swing_tells_only_together_are_refused_by_name() {
     let paths = free.map(|path| path.parse::<ParameterPath>().unwrap());
     let error = refit(&pendulum(), &paths, &split, None, &|_| {}).unwrap_err();
     assert_eq!(error.mixed, free);
+    assert_eq!(error.hold.len(), 1, "{:?}", error.hold);
     assert!(error.to_string().contains("mixtures"), "{error}");
     // Each by itself is told.
     for path in paths {
