@@ -50,7 +50,7 @@ pub struct Draft {
 /// calibration : file name or path
 ///     LeRobot's calibration, which per cent of a joint's range refer to.
 /// unit : "rad", "deg" or "percent"
-///     In what LeRobot wrote angles.
+///     In what LeRobot's code wrote the angles, in a data set or any table.
 ///
 /// Returns
 /// -------

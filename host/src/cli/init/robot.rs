@@ -26,10 +26,10 @@ pub struct RobotArgs {
     #[arg(long, num_args = 1.., value_name = "JOINT=NAME", requires = "robot")]
     #[arg(value_parser = mapped)]
     map: Vec<(String, String)>,
-    /// Calibration of LeRobot's that per cent of a joint's range refer to
+    /// LeRobot's calibration of the robot, which per cent of a joint's range refer to
     #[arg(long, value_name = "FILE.json", requires = "robot")]
     calibration: Option<PathBuf>,
-    /// In what LeRobot wrote angles
+    /// In what LeRobot's code wrote the angles, in a data set or any table
     #[arg(long, value_parser = ["rad", "deg", "percent"], requires = "robot")]
     unit: Option<String>,
 }

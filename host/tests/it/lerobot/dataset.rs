@@ -207,6 +207,21 @@ impl Dataset {
         }
     }
 
+    /// Its first episode as a plain table, as a loop of one's own around LeRobot's robots writes it.
+    pub fn table(&self) -> String {
+        let columns = JOINTS.map(|joint| format!("{joint}.pos,{joint}.goal"));
+        let mut text = format!("time_s,{}\n", columns.join(","));
+        let Episode { state, action } = &self.episodes[0];
+        for (row, (angles, goals)) in state.iter().zip(action).enumerate() {
+            text += &(row as f64 / FPS).to_string();
+            for (angle, goal) in angles.iter().zip(goals) {
+                text += &format!(",{angle},{goal}");
+            }
+            text.push('\n');
+        }
+        text
+    }
+
     /// Writes it, the first two episodes of v3.0 in one file.
     pub fn write(&self, folder: &Path) {
         let is_v3 = self.version == "v3.0";

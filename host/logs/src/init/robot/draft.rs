@@ -21,9 +21,9 @@ pub struct RobotRequest<'a> {
     pub name: Option<&'a str>,
     /// Joints of the robot with what the log calls them, where the names do not tell.
     pub mapped: &'a [(String, String)],
-    /// What LeRobot's per cent are of.
+    /// What per cent are of.
     pub calibration: Option<&'a Calibration>,
-    /// In what LeRobot writes angles, where the user knows.
+    /// In what angles are written, where the user knows.
     pub unit: Option<LerobotUnit>,
     /// Which input drives the joints, where the user knows.
     pub drive: Option<&'a str>,

@@ -26,9 +26,9 @@ struct RobotLog<'a> {
     pub joints: &'a [MovingJoint],
     /// Joints of the robot with what the log calls them, where the names do not tell.
     pub mapped: &'a [(String, String)],
-    /// What LeRobot's per cent are of.
+    /// What per cent are of.
     pub calibration: Option<&'a Calibration>,
-    /// In what LeRobot writes angles, where the user knows.
+    /// In what angles are written, where the user knows.
     pub unit: Option<LerobotUnit>,
     /// Which input drives the joints, where the user knows.
     pub drive: Option<&'a str>,
@@ -48,13 +48,8 @@ fn robot_log(log: &RawLog, file: &str, ask: &RobotLog) -> Result<(LogPlan, Vec<G
     let mut said = Vec::new();
     let guess = log_guess(log, file, ask.drive, &mut said)?;
     let is_lerobot = is_lerobot(&guess);
-    if !is_lerobot && (ask.unit.is_some() || ask.calibration.is_some()) {
-        let what = format!("{file}: --unit and --calibration are of data sets of LeRobot");
-        return Err(Error::usage(
-            what,
-            "name a data set's folder, or leave them out",
-        ));
-    }
+    // A table whose owner says in what LeRobot's code wrote it is one of its data sets by then.
+    let is_calibrated = is_lerobot || ask.unit.is_some() || ask.calibration.is_some();
     let own: Vec<LogJoint> = guess
         .joints
         .iter()
@@ -67,7 +62,7 @@ fn robot_log(log: &RawLog, file: &str, ask: &RobotLog) -> Result<(LogPlan, Vec<G
         .map(|(joint, (index, _))| (joint, &guess.joints[*index], &own[*index]))
         .collect();
     say_matched(&pairs, &found, &own, &mut said);
-    let units = if is_lerobot {
+    let units = if is_calibrated {
         // Said of each, and now of all.
         let (angle, input) = ("angle of joint ", "input of joint ");
         said.retain(|guess| !guess.what.starts_with(angle) && !guess.what.starts_with(input));

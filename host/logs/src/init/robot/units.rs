@@ -1,4 +1,5 @@
-//! Units of a data set's angles: degrees, rad, or per cent of what a calibration says.
+//! Units of angles that LeRobot wrote, in a data set or a plain table: degrees, rad, or per cent of
+//! what a calibration says.
 
 use super::matching::{LogJoint, matched};
 use super::{RobotLog, columns_of};
@@ -64,6 +65,8 @@ pub(super) struct AngleUnits<'a> {
     /// For each joint, its servo.
     motors: Vec<Option<MotorCalibration>>,
     is_dynamixel: bool,
+    /// Whether a gripper's degrees are per cent: those of a table need not be LeRobot's.
+    is_dataset: bool,
 }
 
 impl<'a> AngleUnits<'a> {
@@ -91,6 +94,7 @@ impl<'a> AngleUnits<'a> {
             unit: LerobotUnit::Rad,
             motors: vec![None; pairs.len()],
             is_dynamixel,
+            is_dataset: log.dataset.is_some(),
         };
         if let Some(calibration) = ask.calibration {
             let all: Vec<LogJoint> = calibration.names().map(of_motor).collect();
@@ -131,7 +135,12 @@ impl<'a> AngleUnits<'a> {
                 ));
             }
         };
-        said.push(Guess::new("angles", unit.words(), why));
+        let words = match unit {
+            // Without a calibration a table's gripper has no per cent.
+            LerobotUnit::Deg if !self.is_dataset && self.ask.calibration.is_none() => "in deg",
+            _ => unit.words(),
+        };
+        said.push(Guess::new("angles", words, why));
         if unit != LerobotUnit::Rad {
             said.push(Guess::new("angle zero", "that of the robot's file", ZERO));
         }
@@ -170,7 +179,9 @@ impl<'a> AngleUnits<'a> {
         let is_percent = self.unit == LerobotUnit::Percent;
         let motor = self.motors[index];
         let scaled = match (is_gripper(&name.name), motor) {
-            (true, None) if is_deg => return Err(self.gripper_range(joint, name)),
+            (true, None) if is_deg && self.is_dataset => {
+                return Err(self.gripper_range(joint, name));
+            }
             (true, Some(motor)) if is_deg || is_percent => {
                 self.within(position, (0.0, 100.0), name)?;
                 self.gripper(motor, joint)
