@@ -16,7 +16,7 @@ pub(super) const HOPELESS: f64 = 36.0;
 pub(super) const FINALISTS: usize = 6;
 /// Hypotheses that get a second look.
 pub(super) const SECOND_LOOKS: usize = 3 * FINALISTS;
-/// Sets from which larger ones grow, beside the one that leaves least where it counts.
+/// Sets from which larger ones grow.
 pub(super) const BEAM: usize = 5;
 /// Partners tried for each set of the beam.
 pub(super) const PARTNERS: usize = 5;
@@ -51,10 +51,14 @@ pub(super) fn singles_steps(candidates: usize) -> usize {
     FIRST_LOOK_STEPS * candidates + FINALS_STEPS
 }
 
-/// Steps of the sets of a size: partners of the beam, then `beside` more looks around the leading
-/// sets, each with finals and swaps.
-pub(super) fn larger_steps(beside: usize) -> usize {
-    (BEAM + 1) * PARTNERS + beside + 4 * FINALS_STEPS + PRUNING_STEPS
+/// Steps of the sets of a size: partners of the beam; a look at so many candidates around each of
+/// the leading sets.
+pub(super) fn larger_steps(candidates: usize) -> usize {
+    let beside = match candidates {
+        0 => 0,
+        _ => 2 * FIRST_LOOK_STEPS * candidates + FINALS_STEPS,
+    };
+    BEAM * PARTNERS + FINALS_STEPS + beside + PRUNING_STEPS
 }
 /// Steps of the judging: its parts.
 pub(super) const JUDGING_STEPS: usize = 8;

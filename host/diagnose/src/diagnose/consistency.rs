@@ -4,17 +4,13 @@
 //! value each time: a wrong torque for a wrong mass, until a payload is bolted on. A law holds in
 //! all motions at once (Chow 1960, Econometrica 28, 591; invariance across conditions: Peters,
 //! Buehlmann & Meinshausen 2016, JRSS B 78, 947).
-//!
-//! Where friction holds a joint or a law jumps, a fit to all motions may stop short of the values
-//! that suit them all, and one to a single motion find them. So values that one motion found are
-//! tried on all before they count as its own.
 
 use super::hypothesis::Hypothesis;
 use super::verdict::FAR_OFF;
-use crate::fitting::{Fit, FitOptions, FitProblem, fit, fit_start_states};
+use crate::fitting::{Fit, FitOptions, FitProblem, fit};
 use rayon::prelude::*;
 
-/// Iterations of a motion's own fit, from the values found for all, and of a fit to all from its.
+/// Iterations of a motion's own fit, from the values found for all.
 const ITERATIONS: usize = 8;
 
 /// A fit of each motion by itself, from the values found for all.
@@ -46,30 +42,6 @@ impl OwnFits {
         };
         let motions = (0..training.motions.len()).into_par_iter();
         Some(OwnFits(motions.map(own).collect()))
-    }
-
-    /// The fit to all motions from the values of one of them, if it leaves less than the
-    /// hypothesis.
-    pub fn fit_to_all(&self, hypothesis: &Hypothesis, training: &FitProblem) -> Option<Fit> {
-        let joint = &hypothesis.evaluation.as_ref()?.fit;
-        let cost = |fit: &Fit| fit.residuals.cost();
-        let suits_all = |own: &Fit| {
-            let all = fit_start_states(&own.model, training);
-            (cost(&all) < cost(joint)).then_some(all)
-        };
-        let moved: Vec<Fit> = self.0.par_iter().filter_map(suits_all).collect();
-        let best = moved
-            .into_iter()
-            .min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
-        let options = FitOptions::iterations(ITERATIONS);
-        let window_starts = Some(best.window_starts.as_slice());
-        Some(fit(
-            &best.model,
-            &joint.free,
-            training,
-            window_starts,
-            options,
-        ))
     }
 
     /// Share of the squared error above the noise, on the training motions, that goes when every
@@ -125,28 +97,5 @@ mod tests {
         assert!(reduction > 0.9, "{reduction}");
         // One motion by itself asks for no other value than itself.
         assert!(OwnFits::of(&friction, &training.only(0)).is_none());
-    }
-
-    /// A fit that stopped short: every motion finds the value by itself, and it suits all.
-    #[test]
-    fn a_value_that_one_motion_finds_is_tried_on_all() {
-        let (stuck, training) = friction(1.0, 0.05, 0);
-        let left = |hypothesis: &Hypothesis| hypothesis.fit().residuals.mean_square();
-        assert!(left(&stuck) > FAR_OFF, "{}", left(&stuck));
-        let own = OwnFits::of(&stuck, &training).unwrap();
-        let moved = own.fit_to_all(&stuck, &training).unwrap();
-        let mut found = stuck.clone();
-        found.judge(moved, &training, None);
-        assert!(found.evaluation.as_ref().unwrap().is_noise());
-        // Noise that is left asks for no values.
-        assert_eq!(own.reduction(&found), None);
-    }
-
-    /// Where every motion asks for another value, that of none suits all.
-    #[test]
-    fn a_value_that_suits_one_motion_alone_is_not_taken() {
-        let (friction, training) = friction(0.5, 0.02, 12);
-        let own = OwnFits::of(&friction, &training).unwrap();
-        assert!(own.fit_to_all(&friction, &training).is_none());
     }
 }

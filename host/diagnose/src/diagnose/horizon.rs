@@ -61,14 +61,13 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Chooses the longest horizon over which a leading set leaves nothing but noise: a longer one
-    /// than was chosen for single effects, or, where all are lost over that, a shorter one. All
-    /// that were evaluated are evaluated again over it.
+    /// Chooses the longest horizon over which a leading set leaves nothing but noise, longer than
+    /// the one that was chosen for single effects. All that were evaluated are evaluated again over
+    /// it.
     ///
     /// Single effects that lose a long run say nothing of sets that follow it; and the more windows
     /// there are, the more begin where the samples around them tell the start state badly: in a
-    /// play, or where a joint just breaks away. A run that a whole set loses although it follows
-    /// the windows of the search is lost to such a start, too.
+    /// play, or where a joint just breaks away.
     pub fn settle_horizon(&mut self, sizes: &mut [Vec<Hypothesis>]) {
         let all = sizes.iter().flatten();
         let mut leaders: Vec<Hypothesis> =
@@ -78,21 +77,14 @@ impl Evaluator<'_> {
         if self.horizon_given {
             return;
         }
-        // Where little more than noise is left, a shorter run only shows less.
-        let lost = !leaders.iter().any(is_followed);
-        let is_longer = self.does(Strategy::LongerHorizon) && self.lengthen_horizon(leaders, sizes);
-        if !is_longer && lost && self.does(Strategy::ShorterHorizon) {
-            self.shorten_horizon(sizes);
+        if self.does(Strategy::LongerHorizon) {
+            self.lengthen_horizon(leaders, sizes);
         }
     }
 
     /// Goes over to the longest of the longer horizons that one of the leaders follows, from the
     /// values it had.
-    fn lengthen_horizon(
-        &mut self,
-        mut leaders: Vec<Hypothesis>,
-        sizes: &mut [Vec<Hypothesis>],
-    ) -> bool {
+    fn lengthen_horizon(&mut self, mut leaders: Vec<Hypothesis>, sizes: &mut [Vec<Hypothesis>]) {
         let horizons = self.horizons();
         let now = horizons.iter().position(|h| *h == self.horizon);
         let mut followed = None;
@@ -112,40 +104,6 @@ impl Evaluator<'_> {
             self.judge_over(horizon, sizes, |hypothesis, training, held_out| {
                 hypothesis.run_longer(&before, training, held_out);
             });
-        }
-        followed.is_some()
-    }
-
-    /// Goes over to the longest of the shorter horizons over which one of those that follow the
-    /// windows of the search leaves nothing but noise.
-    fn shorten_horizon(&mut self, sizes: &mut [Vec<Hypothesis>]) {
-        let mut leaders: Vec<Hypothesis> = sizes.iter().flatten().cloned().collect();
-        leaders.retain(Hypothesis::follows_windows);
-        leaders.sort_by(Hypothesis::by_error);
-        leaders.truncate(LEADERS);
-        if leaders.is_empty() {
-            return;
-        }
-        let horizons = self.horizons().into_iter();
-        let shorter = horizons
-            .skip_while(|horizon| *horizon != self.horizon)
-            .skip(1);
-        for horizon in shorter.collect::<Vec<_>>() {
-            let (training, held_out) = self.cut(horizon);
-            leaders.par_iter_mut().for_each(|leader| {
-                leader.evaluation = None;
-                let options = FitOptions::iterations(EVALUATE);
-                leader.evaluate(&self.search, &training, held_out.as_ref(), options);
-            });
-            if leaders.iter().any(|leader| self.at_noise_floor(leader)) {
-                let search = self.search.clone();
-                self.judge_over(horizon, sizes, |hypothesis, training, held_out| {
-                    hypothesis.evaluation = None;
-                    let options = FitOptions::iterations(EVALUATE);
-                    hypothesis.evaluate(&search, training, held_out, options);
-                });
-                return;
-            }
         }
     }
 

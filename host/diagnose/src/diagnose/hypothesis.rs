@@ -6,7 +6,7 @@ use crate::fitting::{
     Candidate, Fit, FitOptions, FitProblem, choose_by_other_motions, fit, fit_start_states,
     intervals, intervals_of, polish,
 };
-use crate::model::{EffectInstance, Model, ParameterPath};
+use crate::model::{Model, ParameterPath};
 use std::cmp::Ordering;
 
 /// A fitted set of effects.
@@ -153,52 +153,13 @@ impl Hypothesis {
         let out = set.remove(leaving);
         let mut model = self.search.model.clone();
         model.effects.retain(|instance| !out.is(instance));
-        self.refitted(set, &model, base, data, iterations)
-    }
-
-    /// This hypothesis with one effect in the place of several of its kind, at the mean of their
-    /// values and refitted from there.
-    pub fn merging(
-        &self,
-        several: &[Candidate],
-        one: Candidate,
-        base: &Hypothesis,
-        data: &FitProblem,
-        iterations: usize,
-    ) -> Hypothesis {
-        let mut model = self.search.model.clone();
-        let is_out = |instance: &EffectInstance| several.iter().any(|out| out.is(instance));
-        let out = model.effects.iter().filter(|instance| is_out(instance));
-        let mut values = vec![0.0; one.parameters().len()];
-        for instance in out {
-            for (sum, value) in values.iter_mut().zip(&instance.values) {
-                *sum += value / several.len() as f64;
-            }
-        }
-        model.effects.retain(|instance| !is_out(instance));
-        model.effects.push(one.instance(&values));
-        let mut set = self.set.clone();
-        set.retain(|candidate| !several.contains(candidate));
-        set.push(one);
-        self.refitted(set, &model, base, data, iterations)
-    }
-
-    /// Another set fitted from the values of `model` and the start states of this one.
-    fn refitted(
-        &self,
-        set: Vec<Candidate>,
-        model: &Model,
-        base: &Hypothesis,
-        data: &FitProblem,
-        iterations: usize,
-    ) -> Hypothesis {
         let mut free = base.search.free.clone();
         free.extend(set.iter().flat_map(|c| c.paths().collect::<Vec<_>>()));
         let (window_starts, options) = (
             &self.search.window_starts,
             FitOptions::iterations(iterations),
         );
-        Hypothesis::new(set, fit(model, &free, data, Some(window_starts), options))
+        Hypothesis::new(set, fit(&model, &free, data, Some(window_starts), options))
     }
 
     /// Refits over the evaluation horizon from the values and start states found on the short

@@ -1,7 +1,9 @@
-//! Fits of one model from random starts.
+//! Fits from random starts, where false valleys are many: few samples.
 
-use super::budget::{START_SAMPLES, STARTS};
-use crate::fitting::{Fit, FitOptions, FitProblem, fit};
+use super::budget::{START_ITERATIONS, START_SAMPLES, STARTS};
+use super::evaluator::Evaluator;
+use super::hypothesis::Hypothesis;
+use crate::fitting::{Candidate, Fit, FitOptions, FitProblem, InitialGuess, fit};
 use crate::model::{Model, ParameterPath};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -80,6 +82,33 @@ pub(super) fn scattered(model: &Model, free: &[ParameterPath], random: &mut ChaC
         }
     }
     scattered
+}
+
+impl Evaluator<'_> {
+    /// Fits from random values around the model's own and the guess's.
+    pub fn random_starts(&self, from: &Hypothesis, guess: &InitialGuess) -> Vec<Hypothesis> {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let mut start = self.start.clone();
+        for candidate in &from.set {
+            let known = from.search.model.effects.iter();
+            let same = known.filter(|&effect| Candidate::from(effect) == *candidate);
+            start.effects.extend(same.cloned());
+        }
+        start.effects.push(guess.candidate.instance(&guess.values));
+        let mut free = from.search.free.clone();
+        free.extend(guess.candidate.paths());
+        let mut valleys = Valleys::of_samples(self.search.samples());
+        let mut fits = Vec::new();
+        while !valleys.are_found() {
+            let model = scattered(&start, &free, &mut random);
+            let options = FitOptions::iterations(START_ITERATIONS);
+            let found = fit(&model, &free, &self.search, None, options);
+            let found = Hypothesis::new(from.set_with(guess.candidate), found);
+            valleys.note(found.search_mean);
+            fits.push(found);
+        }
+        fits
+    }
 }
 
 #[cfg(test)]

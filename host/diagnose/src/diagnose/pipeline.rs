@@ -224,7 +224,8 @@ impl<'a> FinishedSearch<'a> {
         course.begin(Stage::Judging, again, JUDGING_STEPS);
         let mut judging = course.judging(!left_out.is_empty());
         let own_fits = judging.part("the fit of each motion by itself", 0.25, || {
-            evaluator.tell_motions_apart(&mut tried)
+            let explanation = tried.explanation(&evaluator);
+            OwnFits::of(explanation.hypothesis(), &evaluator.training)
         });
         judging.part("the values to their last digit", 0.35, || {
             evaluator.settle(&mut tried)
@@ -284,22 +285,6 @@ const SECOND: &str = "the second search";
 const TURNS: &str = "what motions held out alone show";
 
 impl Evaluator<'_> {
-    /// Fits of the explanation to each motion by itself. Where values that one motion found suit
-    /// all of them better than those found for all, the best set takes these.
-    fn tell_motions_apart(&self, tried: &mut SearchOutcome) -> Option<OwnFits> {
-        let explanation = tried.explanation(self);
-        let own = OwnFits::of(explanation.hypothesis(), &self.training)?;
-        if let Explanation::Effects(best) = explanation
-            && self.does(Strategy::OwnFits)
-            && let Some(fit) = own.fit_to_all(best, &self.training)
-        {
-            let mut best = best.clone();
-            best.judge(fit, &self.training, self.held_out.as_ref());
-            tried.best = Some(best);
-        }
-        Some(own)
-    }
-
     /// Fits the best set, where it is the explanation, as exactly as its values are stated, from
     /// the values of the given model too.
     fn settle(&self, tried: &mut SearchOutcome) {

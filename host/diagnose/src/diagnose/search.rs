@@ -1,14 +1,14 @@
-//! The search: every candidate alone, then pairs and swaps around the best, then larger sets while
-//! more is left than noise excuses.
+//! The search: every candidate alone, then pairs around the best, then larger sets while more is
+//! left than noise excuses.
 //!
 //! A forward-greedy search stops where no single effect helps although two together would; so sets
-//! grow from a beam of several, not from one, and members of the best set are swapped. Within a
+//! grow from a beam of several, not from one, and lose again what they no longer need. Within a
 //! size, successive halving spends the iterations: all get a look, many a second, few are fitted to
-//! the end.
+//! the end. What each further part of the search brings is measured by `cargo xtask ablation`.
 
 use super::budget::{
-    BEAM, EVALUATION_STEPS, FAR_BEHIND, FINALISTS, FINISH, FIRST_LOOK_STEPS, LOOK, PARTNERS,
-    SECOND_LOOKS, VALUE_STEPS, larger_steps, singles_steps,
+    BEAM, EVALUATION_STEPS, FAR_BEHIND, FINALISTS, FINISH, LOOK, SECOND_LOOKS, VALUE_STEPS,
+    larger_steps, singles_steps,
 };
 use super::evaluator::{Evaluator, Reach, every_change};
 use super::explanation::Explanation;
@@ -18,7 +18,6 @@ use super::strategy::Strategy;
 use super::verdict::FAR_OFF;
 use crate::fitting::{FitOptions, InitialGuess};
 use rayon::prelude::*;
-use std::sync::Arc;
 
 mod partners;
 mod plainest;
@@ -105,8 +104,8 @@ impl Evaluator<'_> {
     fn begin_size(&self, size: usize, found: &mut SearchResults) {
         let stage = Stage::of_size(size);
         let beside = match self.reach {
-            Reach::Promising => PARTNERS,
-            Reach::Everything => 2 * FIRST_LOOK_STEPS * self.candidates.len(),
+            Reach::Promising => 0,
+            Reach::Everything => self.candidates.len(),
         };
         found.at = Some(stage);
         self.say(stage, larger_steps(beside));
@@ -191,8 +190,7 @@ impl Evaluator<'_> {
 
     /// Takes each effect out of the smallest set that pays, and out of the best of every size that
     /// leaves less than all smaller ones: what helped another out of a false valley is not missing
-    /// itself; and what each joint has is taken for one effect of all. Then the smallest that pays
-    /// is the best.
+    /// itself. Then the smallest that pays is the best.
     fn prune(&self, found: &mut SearchResults) {
         loop {
             found.best = self.smallest_that_pays(&found.sizes);
@@ -209,9 +207,6 @@ impl Evaluator<'_> {
                 return;
             };
             self.take_apart(&whole, &mut found.sizes[whole.set.len() - 2]);
-            for merged in self.merged(&whole) {
-                put_among(&mut found.sizes[merged.set.len() - 1], vec![merged]);
-            }
             self.keep(found, |found| found.taken_apart.push(whole.set));
         }
     }
@@ -228,45 +223,13 @@ impl Evaluator<'_> {
         put_among(fewer, rests.collect());
     }
 
-    /// Looks further for sets of the largest size, where the best leaves something to explain:
-    /// every candidate, or, where sets of that size bring nothing over the effects of the best
-    /// smaller one, those that promise most beside it.
+    /// Looks further for sets of the largest size where every candidate is to be tried, and the
+    /// best leaves something to explain.
     fn grow_further(&mut self, found: &mut SearchResults) {
-        let [.., smaller, larger] = &mut found.sizes[..] else {
-            return;
-        };
-        if self.reach == Reach::Everything {
+        if let ([.., smaller, larger], Reach::Everything) = (&mut found.sizes[..], self.reach) {
             self.try_all_beside(smaller, larger);
             self.take_evaluated();
-            return;
         }
-        let stuck = found.best.as_ref();
-        let Some(stuck) = stuck.filter(|best| Some(best.set.len()) == found.before) else {
-            return;
-        };
-        // Where the smaller sets do not pay either, from the one that leaves least.
-        let from_stuck = larger
-            .first()
-            .is_some_and(|l| stuck.set.len() + 1 == l.set.len());
-        let from = if from_stuck {
-            Some(stuck)
-        } else {
-            smaller.first()
-        };
-        if let Some(from) = from.filter(|_| self.does(Strategy::GrowingAfresh)) {
-            self.grow_afresh(&from.clone(), larger);
-            self.take_evaluated();
-        }
-    }
-
-    /// Looks for a partner of a set by what every candidate changes in that set's own prediction,
-    /// and puts what it finds among the sets that are `larger` by one: where the base model is far
-    /// off, its prediction says little of what is missing beside the set.
-    fn grow_afresh(&mut self, set: &Hypothesis, larger: &mut Vec<Hypothesis>) {
-        let afresh = Arc::new(every_change(set, &self.candidates, &self.search));
-        let of_base = std::mem::replace(&mut self.changes, afresh);
-        put_among(larger, self.grow(std::slice::from_ref(set)));
-        self.changes = of_base;
     }
 
     /// Tries every candidate on top of the sets that lead, one in the windows of the search and one
@@ -282,7 +245,7 @@ impl Evaluator<'_> {
             self.first_look(set, &every_change(set, &beside, &self.search), 1)
         });
         let found = self.successive_halving(found.collect());
-        put_among(larger, self.swapped(self.evaluated(found)));
+        put_among(larger, self.evaluated(found));
     }
 
     fn singles(&mut self) -> Vec<Hypothesis> {
@@ -293,7 +256,6 @@ impl Evaluator<'_> {
         if !is_followed && !self.is_led(&hypotheses) {
             self.restart_jumping(&mut hypotheses);
             hypotheses.sort_by(Hypothesis::by_error);
-            self.restage_leader(&mut hypotheses);
         }
         self.choose_horizon(&hypotheses);
         self.evaluated(hypotheses)
@@ -334,11 +296,10 @@ impl Evaluator<'_> {
         hypotheses
     }
 
-    /// Larger sets: partners for each set of the beam, chosen by what they would gain, then swaps
-    /// in the best.
+    /// Larger sets: partners for each set of the beam, chosen by what they would gain.
     fn grow(&self, smaller: &[Hypothesis]) -> Vec<Hypothesis> {
         let mut tried: Vec<Hypothesis> = Vec::new();
-        for from in beam(smaller, self.does(Strategy::LeastBehind)) {
+        for from in beam(smaller) {
             let partners = self.partners(from, &tried);
             let found = partners.par_iter().map(|guess| {
                 self.course.step(1);
@@ -347,24 +308,16 @@ impl Evaluator<'_> {
             let found: Vec<Hypothesis> = found.collect();
             tried.extend(found);
         }
-        let finals = self.evaluated(self.successive_halving(tried));
-        self.swapped(finals)
+        self.evaluated(self.successive_halving(tried))
     }
 }
 
 /// The sets that larger ones grow from: the best of the short windows, unless they are far behind
-/// the first, and the one that leaves least where it counts, which may lie behind five of the first
-/// that are nearly the same: that one if asked for.
-fn beam(sorted: &[Hypothesis], least_behind: bool) -> impl Iterator<Item = &Hypothesis> {
+/// the first.
+fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
     let far = FAR_BEHIND * sorted.first().map_or(0.0, |first| first.search_mean);
-    let near = sorted.iter().take_while(|h| h.search_mean <= far).count();
-    let (first, behind) = sorted.split_at(near.min(BEAM));
-    let mean = Hypothesis::deciding_mean;
-    let least = first.iter().map(mean).fold(f64::INFINITY, f64::min);
-    let best_behind = behind.iter().min_by(|a, b| mean(a).total_cmp(&mean(b)));
-    first
-        .iter()
-        .chain(best_behind.filter(|best| least_behind && mean(best) < least))
+    let near = sorted.iter().take_while(move |h| h.search_mean <= far);
+    near.take(BEAM)
 }
 
 /// The one that leaves least where it counts.
@@ -390,8 +343,6 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
 mod drive_lag_tests;
 #[cfg(test)]
 mod ended_tests;
-#[cfg(test)]
-mod merged_tests;
 #[cfg(test)]
 mod stated_tests;
 #[cfg(test)]

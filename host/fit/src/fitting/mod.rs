@@ -92,7 +92,6 @@ pub use refit::{NotAdded, Refitted, Undetermined, refit, refit_from, refit_with}
 pub use residual::{Residuals, predicted, residuals};
 pub use search_windows::{enough_to_search, is_followed, search_horizons};
 pub use solve::{fit, fit_start_states, fit_start_states_roughly, guessed_window_starts};
-pub use staged::fit_through_stages;
 pub use step_size::coarsened;
 pub use student::quantile_975;
 pub use ways::{best_fit, stated, stated_from};

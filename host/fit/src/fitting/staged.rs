@@ -124,18 +124,6 @@ fn carried(
         .collect()
 }
 
-/// Fits from where the stages of short windows end.
-pub fn fit_through_stages(
-    model: &Model,
-    free: &[ParameterPath],
-    data: &FitProblem,
-    options: FitOptions,
-) -> Fit {
-    let mut stages = Stages::from(model, free, data);
-    stages.through(SHORT_S);
-    stages.end(options)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::ways::best_fit;

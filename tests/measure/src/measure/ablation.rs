@@ -292,6 +292,23 @@ fn differing(without: &str, [whole, own]: &[&Outcome; 2]) -> Option<String> {
     })
 }
 
+/// Which parts that were measured the search no longer has.
+fn gone(all: &[Ablated]) -> String {
+    let measured = all.iter().flat_map(|own| own.without.split(", "));
+    let measured: BTreeSet<&str> = measured.filter(|part| !part.is_empty()).collect();
+    let gone: Vec<&str> = measured
+        .into_iter()
+        .filter(|part| Strategy::named(part).is_none())
+        .collect();
+    if gone.is_empty() {
+        return String::new();
+    }
+    format!(
+        " Taken out of the search since, as nothing was lost without them: {}.",
+        gone.join(", ")
+    )
+}
+
 /// The families of the rigs, with their seeds.
 fn rigs(all: &[Ablated]) -> String {
     let mut seeds = BTreeMap::<String, BTreeSet<u64>>::new();
@@ -305,7 +322,8 @@ fn rigs(all: &[Ablated]) -> String {
     });
     format!(
         "Rigs: {}. A row is measured by `--families` and `--parts` (several at once with \
-         `--together`), and kept in the file of `--outcomes`.",
-        families.collect::<Vec<_>>().join("; ")
+         `--together`), and kept in the file of `--outcomes`.{}",
+        families.collect::<Vec<_>>().join("; "),
+        gone(all)
     )
 }

@@ -27,7 +27,7 @@ impl Evaluator<'_> {
         let vague = vague_effects(whole, &self.training);
         let mut found: Vec<Hypothesis> = vague
             .into_par_iter()
-            .flat_map_iter(|leaving| self.with_plainer(whole, leaving, &[]))
+            .flat_map_iter(|leaving| self.with_plainer(whole, leaving))
             .collect();
         found.par_iter_mut().for_each(|set| {
             set.resume(&self.search, FitOptions::iterations(FINISH));
@@ -39,19 +39,13 @@ impl Evaluator<'_> {
         found.into_iter().min_by(Hypothesis::by_error)
     }
 
-    /// A short look at the set with one effect replaced by each plainer one that acts there, where
-    /// that makes a set that was not tried yet.
-    pub(super) fn with_plainer(
-        &self,
-        whole: &Hypothesis,
-        leaving: usize,
-        tried: &[Hypothesis],
-    ) -> Vec<Hypothesis> {
+    /// A short look at the set with one effect replaced by each plainer one that acts there.
+    fn with_plainer(&self, whole: &Hypothesis, leaving: usize) -> Vec<Hypothesis> {
         let out = whole.set[leaving];
         let rest = whole.without(leaving, &self.base, &self.search, LOOK);
         let firsts = self.changes.iter().filter_map(|changes| changes.first());
         let plainer = firsts.filter(|change| {
-            is_plainer(change.candidate, out) && self.is_new(&rest, change.candidate, tried)
+            is_plainer(change.candidate, out) && self.is_new(&rest, change.candidate, &[])
         });
         let residual = ProjectedResidual::new(&rest.search);
         let looked = plainer.filter_map(|like| {
