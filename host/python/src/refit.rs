@@ -9,7 +9,7 @@ use handstand::fitting::{
     Addition, Refitted, Undetermined, add_effects, candidates_named, freed, refit, with_refitted,
 };
 use handstand::model::JointNames;
-use handstand::report::{refitted_json, refitted_text};
+use handstand::report::{refitted_json, refitted_text, remedy_of};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -158,9 +158,7 @@ pub fn names(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
 }
 
 fn undetermined(why: &Undetermined) -> PyErr {
-    failed(format!(
-        "{why}\nremedy: fit fewer values, or bring motions that show them"
-    ))
+    failed(format!("{why}\nremedy: {}", remedy_of(why)))
 }
 
 #[pymethods]

@@ -50,7 +50,7 @@ pub use page::html;
 pub use page::html_with;
 pub use proposal::{next_steps, proposal_text};
 pub use raw_plot::{raw_html, raw_text};
-pub use refitted::{refitted_json, refitted_text};
+pub use refitted::{refitted_json, refitted_text, remedy_of};
 pub use signatures::chart as signature_chart;
 pub use study_plots::{monte_carlo_svg, sweep_svg};
 pub use text::diagnosis_text;

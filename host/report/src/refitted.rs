@@ -1,7 +1,8 @@
 //! A refitted model, for people and programs.
 
 use super::table::{columns_of, table_of};
-use crate::fitting::{BaseParameters, FittedValue, Refitted, in_windows};
+use crate::diagnose::how_to_measure;
+use crate::fitting::{BaseParameters, FittedValue, Refitted, Undetermined, in_windows};
 use crate::model::JointNames;
 use crate::output::number::{exact, given, measured, short};
 use crate::output::table::within_width;
@@ -64,26 +65,42 @@ fn told_together(together: &BaseParameters) -> Option<String> {
     if together.held.is_empty() {
         return None;
     }
-    let counted = |(path, share): &(String, f64)| {
-        let sign = if *share < 0.0 { " - " } else { " + " };
-        format!("{sign}{} {path}", short(share.abs()))
+    let counted = |(place, (path, share)): (usize, &(String, f64))| match place {
+        0 => path.clone(),
+        _ if *share < 0.0 => format!(" - {} {path}", short(-share)),
+        _ => format!(" + {} {path}", short(*share)),
     };
     let sums = together.told.iter().map(|own| {
-        let (first, held) = own
-            .terms
-            .split_first()
-            .map_or((String::new(), &[][..]), |(f, h)| (f.0.clone(), h));
-        let held: String = held.iter().map(counted).collect();
+        let sum: String = own.terms.iter().enumerate().map(counted).collect();
         let value = measured(own.value, own.low, own.high, &own.unit);
-        format!("  {first}{held} = {value}\n")
+        format!("  {sum} = {value}\n")
     });
     let held = together.held.iter().map(|path| format!("`{path}`"));
     let held = held.collect::<Vec<_>>().join(", ");
     Some(format!(
-        "these motions tell of some values only sums:\n{}  hold {held} at what is known of them (not \
-         free, or with their `[uncertainty]`), and the others are told",
+        "these motions tell of some values only sums:\n{}  hold {held} at what is known of them \
+         (not free, or with their `[uncertainty]`), and the others are told",
         sums.collect::<String>()
     ))
+}
+
+/// What to do where motions do not determine the values of a fit.
+pub fn remedy_of(refused: &Undetermined) -> String {
+    let hold = match refused.hold.as_slice() {
+        [] => refused.mixed.get(..1).unwrap_or_default(),
+        hold => hold,
+    };
+    let measured = hold.iter().find_map(|path| how_to_measure(path));
+    let measured = measured.map_or(String::new(), |how| format!(" ({how})"));
+    let them = if hold.len() == 1 { "it" } else { "them" };
+    match hold {
+        [] => "fit fewer values, or record motions that show them".to_string(),
+        [..] => format!(
+            "leave `{}` out of the fit, at what is known of {them}{measured}: the others are told \
+             then",
+            hold.join("`, `")
+        ),
+    }
 }
 
 /// A refitted model for programs.

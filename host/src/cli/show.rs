@@ -2,10 +2,10 @@
 
 use super::Console;
 use comfy_table::{ContentArrangement, Table};
-use handstand::diagnose::how_to_measure;
 use handstand::fitting::Undetermined;
 use handstand::output::number::exact;
 use handstand::output::table::{plain_table, within_width};
+use handstand::report::remedy_of;
 use handstand::report::table::{self, Columns};
 use handstand::synth::{linearise, upright};
 use handstand::sysid::IntervalEstimate;
@@ -30,20 +30,8 @@ pub fn wide_table() -> Table {
 
 /// Values that cannot be had, for people.
 pub fn undetermined(refused: &Undetermined) -> String {
-    let hold = match refused.hold.as_slice() {
-        [] => refused.mixed.get(..1).unwrap_or_default(),
-        hold => hold,
-    };
-    let measured = hold.iter().find_map(|path| how_to_measure(path));
-    let measured = measured.map_or(String::new(), |how| format!(" ({how})"));
-    let remedy = match hold {
-        [] => "Fit fewer values, or record motions that show them.".to_string(),
-        [..] => format!(
-            "Leave `{}` out of the fit, at what is known of it{measured}: the others are told then.",
-            hold.join("`, `")
-        ),
-    };
-    format!("refused: {refused}; nothing is written. {remedy}")
+    let remedy = remedy_of(refused);
+    format!("refused: {refused}; nothing is written. What to do: {remedy}.")
 }
 
 /// Says which effects of the model a linear design leaves out.

@@ -16,7 +16,7 @@ use crate::fitting::{
 };
 use crate::model::edit::set_bounds;
 use crate::model::{Model, ParameterPath};
-use crate::report::verdict_sentence;
+use crate::report::{remedy_of, verdict_sentence};
 use serde::Deserialize;
 use std::path::Path;
 use std::sync::PoisonError;
@@ -298,10 +298,7 @@ fn saved_values(refitted: &Refitted) -> Vec<SavedValue> {
 }
 
 fn undetermined(why: &Undetermined) -> Error {
-    Error::usage(
-        why.to_string(),
-        "bring a motion that shows them, or free fewer values",
-    )
+    Error::usage(why.to_string(), remedy_of(why))
 }
 
 pub(super) fn unchanged(saved: &SavedSession, begun: &SavedSession) -> Result<()> {

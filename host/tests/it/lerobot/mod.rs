@@ -144,7 +144,7 @@ fn fitted_masses_are_written_by_their_links_names() {
     // A mast that slews about the vertical shows its moment alone.
     let refused = fit("");
     assert_eq!(refused.code, Some(1), "{refused:?}");
-    let told = "Leave `link.mast.mass_kg` out of the fit";
+    let told = "What to do: leave `link.mast.mass_kg` out of the fit";
     assert!(refused.stdout.contains(told), "{refused:?}");
     let found = done(fit("link.mast.mass_kg")).stdout;
     assert!(!found.contains("only sums"), "{found}");
