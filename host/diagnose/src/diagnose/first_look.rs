@@ -20,6 +20,11 @@ const WORTH: f64 = 0.05;
 const ALWAYS_GLANCED: usize = 60;
 const WORTH_A_GLANCE: f64 = 0.005;
 
+/// More of one effect cannot leave more: where a glance ends this far above the squared error of
+/// what it began from, its derivatives led astray, as where free values take the effect's place
+/// until it is large, and it gets a look whatever it left.
+const MISLED: f64 = 1.02;
+
 /// A guess and the fit from it.
 type Glance = (InitialGuess, Hypothesis);
 
@@ -141,7 +146,9 @@ impl Evaluator<'_> {
         limit: f64,
     ) -> Option<Hypothesis> {
         for (_, hypothesis) in &mut glances {
-            if hypothesis.search_mean <= limit {
+            let is_misled = hypothesis.search_mean > MISLED * from.search_mean
+                && self.does(Strategy::MisledGlances);
+            if hypothesis.search_mean <= limit || is_misled {
                 hypothesis.resume(&self.search, FitOptions::iterations(LOOK).rough());
             }
         }

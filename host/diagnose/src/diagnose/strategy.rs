@@ -13,6 +13,8 @@ pub enum Strategy {
     SmallestPart,
     /// Plainer laws in the place of those that the motions do not determine.
     PlainestLaw,
+    /// A look at candidates that their derivatives led astray.
+    MisledGlances,
     /// Fits of laws that jump from every start and the values of the file.
     Restarts,
     /// A horizon chosen by what single effects gain.
@@ -25,7 +27,8 @@ pub enum Strategy {
 
 impl Strategy {
     /// All, in the order in which a diagnosis comes to them.
-    pub const ALL: [Strategy; 9] = [
+    pub const ALL: [Strategy; 10] = [
+        Strategy::MisledGlances,
         Strategy::RandomStarts,
         Strategy::Restarts,
         Strategy::ChosenHorizon,
@@ -40,6 +43,7 @@ impl Strategy {
     /// What a command calls it.
     pub fn name(self) -> &'static str {
         match self {
+            Strategy::MisledGlances => "misled-glances",
             Strategy::RandomStarts => "random-starts",
             Strategy::Restarts => "restarts",
             Strategy::ChosenHorizon => "chosen-horizon",
