@@ -38,8 +38,9 @@ pub(super) fn link_named<'a>(
         .entry("link")
         .or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
     let is_own = |table: &mut dyn TableLike| table.get("name").and_then(Item::as_str) == Some(name);
-    let known = tables(links).position(is_own);
-    let index = known.unwrap_or_else(|| tables(links).count());
+    let own: Vec<bool> = tables(links).map(is_own).collect();
+    let known = own.iter().rposition(|is_own| *is_own);
+    let index = known.unwrap_or(own.len());
     if known.is_none() {
         let mut table = Table::new();
         table.decor_mut().set_prefix("\n");
@@ -70,5 +71,15 @@ mod tests {
             planar
         );
         assert_eq!(robot_file("[rig"), None);
+    }
+
+    /// Joints that move one body have links of its name, and the last its mass.
+    #[test]
+    fn of_tables_of_one_name_the_last_is_the_links() {
+        let text = "[[link]]\nname = \"boom\"\n[[link]]\nname = \"boom\"\nmass_kg = 1.0\n";
+        let mut document: DocumentMut = text.parse().unwrap();
+        let table = link_named(&mut document, "boom").unwrap();
+        table.insert("mass_kg", toml_edit::value(2.0));
+        assert_eq!(document.to_string(), text.replace("1.0", "2.0"));
     }
 }
