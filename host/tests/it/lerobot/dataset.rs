@@ -207,7 +207,7 @@ impl Dataset {
         }
     }
 
-    /// Its first episode as a plain table, as a loop of one's own around LeRobot's robots writes it.
+    /// Its first episode as a plain table, as an owner's own loop around LeRobot's robot writes it.
     pub fn table(&self) -> String {
         let columns = JOINTS.map(|joint| format!("{joint}.pos,{joint}.goal"));
         let mut text = format!("time_s,{}\n", columns.join(","));

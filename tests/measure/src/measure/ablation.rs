@@ -303,10 +303,7 @@ fn gone(all: &[Ablated]) -> String {
     if gone.is_empty() {
         return String::new();
     }
-    format!(
-        " Taken out of the search since, as nothing was lost without them: {}.",
-        gone.join(", ")
-    )
+    format!(" Taken out of the search since: {}.", gone.join(", "))
 }
 
 /// The families of the rigs, with their seeds.
