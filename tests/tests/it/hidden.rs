@@ -135,6 +135,37 @@ fn a_plan_has_every_case_once_whatever_its_truth() {
 }
 
 #[test]
+fn a_plan_says_of_which_family_there_is_nothing_to_try() {
+    let check = |truth, family, effects: &[&str]| {
+        let plan = Plan {
+            truth,
+            families: vec![Family::Single, family],
+            effects: effects.iter().map(|effect| effect.to_string()).collect(),
+            seeds: 1,
+            nominal: 1,
+            seed0: 1,
+        };
+        plan.check()
+    };
+    assert_eq!(check(Truth::Mujoco, Family::So101, &["coulomb"]), Ok(()));
+    let why = check(Truth::Own, Family::So101, &["coulomb"]).unwrap_err();
+    assert!(
+        why.starts_with("so101: ") && why.contains("--truth mujoco"),
+        "{why}"
+    );
+    let why = check(Truth::Own, Family::Robot, &["coulomb"]).unwrap_err();
+    assert!(
+        why.starts_with("robot: ") && why.contains("--truth robot"),
+        "{why}"
+    );
+    let why = check(Truth::Own, Family::Approximate, &["mass"]).unwrap_err();
+    assert!(
+        why.starts_with("approximate: ") && why.contains("--effects"),
+        "{why}"
+    );
+}
+
+#[test]
 fn an_outcome_is_read_back_as_it_was_written() {
     let case = case(Family::Nothing, &[], 3);
     let outcome = try_case(&case, None).unwrap();

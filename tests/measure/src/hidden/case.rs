@@ -21,6 +21,14 @@ pub enum Truth {
     Robot,
 }
 
+impl Truth {
+    /// As the command line calls it.
+    pub fn name(self) -> String {
+        let value = clap::ValueEnum::to_possible_value(&self);
+        value.map_or_else(String::new, |value| value.get_name().to_string())
+    }
+}
+
 /// A rig to diagnose.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Case {

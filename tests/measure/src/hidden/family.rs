@@ -278,6 +278,31 @@ impl Plan {
             .collect()
     }
 
+    /// An error that names the first family of which there is nothing to try, and why.
+    pub fn check(&self) -> Result<(), String> {
+        let mut families = self.families.iter();
+        let Some(&family) = families.find(|family| self.of(**family).is_empty()) else {
+            return Ok(());
+        };
+        let why = match self.other_truth(family) {
+            Some(needed) => format!("its logs are made with --truth {}", needed.name()),
+            None => "it hides none of these --effects, or --seeds or --nominal is 0".into(),
+        };
+        Err(format!("{}: nothing to try; {why}", family.name()))
+    }
+
+    /// Who makes a family's logs, where this plan's truth does not.
+    fn other_truth(&self, family: Family) -> Option<Truth> {
+        let makers: &[Truth] = if family.is_recorded() {
+            &[Truth::Robot]
+        } else if family.is_in_space() {
+            &[Truth::Mujoco]
+        } else {
+            &[Truth::Own, Truth::Mujoco]
+        };
+        (!makers.contains(&self.truth)).then(|| makers[0])
+    }
+
     fn of(&self, family: Family) -> Vec<Case> {
         let case = |hidden: Vec<&'static str>, seed| Case {
             truth: self.truth,
@@ -296,8 +321,7 @@ impl Plan {
                 .flat_map(|kind| seeds.clone().map(|seed| case(vec![kind], seed)))
                 .collect()
         };
-        let is_made = self.truth == Truth::Mujoco || !family.is_in_space();
-        if !is_made || (self.truth == Truth::Robot) != family.is_recorded() {
+        if self.other_truth(family).is_some() {
             return Vec::new();
         }
         match family {

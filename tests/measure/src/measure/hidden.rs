@@ -111,6 +111,9 @@ fn tried(args: &Args) -> Result<bool, String> {
         .outcomes
         .as_deref()
         .map_or(Ok(Vec::new()), journal::read::<Outcome>)?;
+    if !(args.tabulate || args.families.is_empty()) {
+        plan.check()?;
+    }
     let mut cases = plan.cases();
     let mut number = 0;
     cases.retain(|_| {
