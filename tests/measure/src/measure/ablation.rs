@@ -100,6 +100,7 @@ fn tried(args: &Args) -> Result<bool, String> {
             nominal: 10,
             seed0: args.seed0,
         };
+        plan.check()?;
         let asked = args.parts.iter().filter_map(|name| Strategy::named(name));
         let asked: Vec<Strategy> = asked.collect();
         let asked = match asked.as_slice() {
