@@ -8,9 +8,8 @@ use super::hypothesis::{Evaluation, Hypothesis};
 use super::measured_value::is_ruled_out;
 use super::multistart::base_fit;
 use super::options::DiagnoseOptions;
-use super::progress::{Course, Stage};
+use super::progress::{Course, Round, Stage};
 use super::residual_structure::residual_structure;
-use super::search::SearchResults;
 use super::strategy::Strategy;
 use super::values::as_given;
 use crate::fitting::{
@@ -20,15 +19,26 @@ use crate::fitting::{
 use crate::model::{MeasuredSignal, Model, ParameterPath};
 use crate::motion::Motion;
 use rayon::prelude::*;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 /// How far a search reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reach {
-    /// Windows of a second; to larger sets the candidates that promise most.
+    /// Windows of a second; to larger sets the candidates that promise most, and every one where
+    /// the base model follows these windows.
     Promising,
     /// Windows that the base model follows; to larger sets every candidate.
     Everything,
+}
+
+impl Reach {
+    /// Which search it is, before it is known whether it is the only one.
+    fn round(self) -> Round {
+        match self {
+            Reach::Promising => Round::First,
+            Reach::Everything => Round::Second,
+        }
+    }
 }
 
 /// What every hypothesis is fitted to and judged by.
@@ -50,7 +60,7 @@ pub(super) struct Evaluator<'a> {
     pub search_horizon: Horizon,
     pub candidates: Vec<Candidate>,
     /// What each start of each candidate changes in the base model's prediction.
-    pub changes: Arc<Vec<Vec<PredictionChange>>>,
+    pub changes: Vec<Vec<PredictionChange>>,
     /// The model as it came, in the steps that it is searched with.
     pub start: Model,
     /// Integration step of its file, s.
@@ -65,11 +75,9 @@ pub(super) struct Evaluator<'a> {
     pub reach: Reach,
     /// Parts of the search that are left out.
     pub skipped: Vec<Strategy>,
-    /// Whether a search of everything would begin with the same windows.
-    pub follows_first: bool,
+    /// Whether larger sets are tried with every candidate: no other search comes after this one.
+    pub tries_all: bool,
     pub course: Course<'a>,
-    /// Where a search of everything parts from this one.
-    pub fork: Option<Box<(Evaluator<'a>, SearchResults)>>,
     /// What was evaluated since the search last kept what it found, and the best of all.
     evaluated: Mutex<Evaluated>,
 }
@@ -99,7 +107,7 @@ impl<'a> Evaluator<'a> {
         } else {
             options.most_effects
         };
-        course.begin(Stage::Base, reach == Reach::Everything, BASE_STEPS);
+        course.begin(Stage::Base, reach.round(), BASE_STEPS);
         let whole = FitProblem::new(model, training, Horizon::Whole).halted_by(&course.halt);
         let longest = options.horizon.unwrap_or(Horizon::Whole);
         let few = held_out.is_empty() && whole.samples() < FEW_SAMPLES;
@@ -111,7 +119,9 @@ impl<'a> Evaluator<'a> {
         }
         let start = SearchStart::new(model, &whole, &horizons, few, options.seed);
         let (search_horizon, search) = (start.horizon, start.data);
-        let follows_first = is_only || is_followed(&start.fit, &search);
+        let is_last = is_only || is_followed(&start.fit, &search);
+        let goes_on = !options.skipped.contains(&Strategy::SecondSearch);
+        let tries_all = reach == Reach::Everything || goes_on && is_last;
         let model = &start.model;
         let mut base = Hypothesis::new(Vec::new(), start.fit);
         let training = whole.recut(longest);
@@ -131,7 +141,7 @@ impl<'a> Evaluator<'a> {
             held_out.as_ref(),
             FitOptions::iterations(FINISH),
         );
-        let changes = Arc::new(every_change(&base, &candidates, &search));
+        let changes = every_change(&base, &candidates, &search);
         Evaluator {
             search,
             training,
@@ -151,9 +161,8 @@ impl<'a> Evaluator<'a> {
             most_effects,
             reach,
             skipped: options.skipped.clone(),
-            follows_first,
+            tries_all,
             course,
-            fork: None,
             evaluated: Mutex::default(),
         }
     }
@@ -163,24 +172,12 @@ impl<'a> Evaluator<'a> {
         !self.skipped.contains(&strategy)
     }
 
-    /// The same for a search of everything, as far as this one has come.
-    pub fn for_everything(&self) -> Evaluator<'a> {
-        Evaluator {
-            search: self.search.clone(),
-            training: self.training.clone(),
-            held_out: self.held_out.clone(),
-            given: self.given.clone(),
-            base: self.base.clone(),
-            candidates: self.candidates.clone(),
-            changes: self.changes.clone(),
-            start: self.start.clone(),
-            known: self.known.clone(),
-            skipped: self.skipped.clone(),
-            course: self.course.clone(),
-            reach: Reach::Everything,
-            fork: None,
-            evaluated: Mutex::default(),
-            ..*self
+    /// Which search this is.
+    pub fn round(&self) -> Round {
+        if self.tries_all && self.reach == Reach::Promising {
+            Round::Only
+        } else {
+            self.reach.round()
         }
     }
 

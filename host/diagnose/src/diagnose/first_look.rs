@@ -46,12 +46,23 @@ fn best_few(mut of_candidates: Vec<f64>) -> f64 {
 }
 
 /// What a candidate must promise for a glance, of what each promises: nothing where all are tried.
-fn least_promise(mut promises: Vec<f64>, reach: Reach) -> f64 {
-    if reach == Reach::Everything || promises.len() <= MANY {
+fn least_promise(mut promises: Vec<f64>, spares_none: bool) -> f64 {
+    if spares_none || promises.len() <= MANY {
         return 0.0;
     }
     promises.sort_by(|a, b| b.total_cmp(a));
     (WORTH_A_GLANCE * promises[0]).min(promises[ALWAYS_GLANCED - 1])
+}
+
+/// The candidates' guesses that are worth a glance, and the others.
+fn worth_a_glance(all: Vec<Vec<InitialGuess>>, spares_none: bool) -> [Vec<Vec<InitialGuess>>; 2] {
+    let promise = |guesses: &[InitialGuess]| guesses.first().map_or(0.0, |guess| guess.gain);
+    let promises = all.iter().map(|guesses| promise(guesses));
+    let least = least_promise(promises.collect(), spares_none);
+    let (worth, rest) = all
+        .into_iter()
+        .partition(|guesses| promise(guesses) >= least);
+    [worth, rest]
 }
 
 impl Evaluator<'_> {
@@ -67,7 +78,8 @@ impl Evaluator<'_> {
         let guesses = changes.par_iter();
         let guesses = guesses.map(|changes| self.guesses(&residual, changes, starts));
         let guesses: Vec<Vec<InitialGuess>> = guesses.collect();
-        let [worth, rest] = self.worth_a_glance(guesses);
+        let spares_none = self.reach == Reach::Everything || !from.set.is_empty();
+        let [worth, rest] = worth_a_glance(guesses, spares_none);
         let glances = worth.into_par_iter().map(|guesses| {
             let glances = guesses.into_iter().map(|guess| {
                 let glance = self.glance(from, &guess);
@@ -91,17 +103,6 @@ impl Evaluator<'_> {
             .collect();
         looks.extend(unpromising);
         looks
-    }
-
-    /// The candidates' guesses that are worth a glance, and the others.
-    fn worth_a_glance(&self, all: Vec<Vec<InitialGuess>>) -> [Vec<Vec<InitialGuess>>; 2] {
-        let promise = |guesses: &[InitialGuess]| guesses.first().map_or(0.0, |guess| guess.gain);
-        let promises = all.iter().map(|guesses| promise(guesses));
-        let least = least_promise(promises.collect(), self.reach);
-        let (worth, rest) = all
-            .into_iter()
-            .partition(|guesses| promise(guesses) >= least);
-        [worth, rest]
     }
 
     /// The best guesses of a candidate.
@@ -185,14 +186,14 @@ mod tests {
     #[test]
     fn of_many_candidates_those_that_promise_nothing_get_no_glance() {
         let many: Vec<f64> = (0..200).map(|k| 1000.0 * 0.9_f64.powi(k)).collect();
-        let least = least_promise(many.clone(), Reach::Promising);
+        let least = least_promise(many.clone(), false);
         let glanced = many.iter().filter(|promise| **promise >= least).count();
         assert_eq!(glanced, ALWAYS_GLANCED);
         let near = vec![1.0; 200];
-        assert!(least_promise(near, Reach::Promising) <= 1.0);
-        assert_eq!(least_promise(many.clone(), Reach::Everything), 0.0);
+        assert!(least_promise(near, false) <= 1.0);
+        assert_eq!(least_promise(many.clone(), true), 0.0);
         let few = many[..MANY].to_vec();
-        assert_eq!(least_promise(few, Reach::Promising), 0.0);
+        assert_eq!(least_promise(few, false), 0.0);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! A diagnosis from beginning to end: one search, or two, and what the verdict rests on.
 //!
-//! Where a search explains nothing a second one spares no candidate. Of what is found, the values
-//! are fitted as exactly as they are stated, and placebos, other motions held out and explanations
-//! with the same predictions are looked for.
+//! Where a search explains nothing in windows that the model loses, a second one in others spares
+//! no candidate. Of what is found, the values are fitted as exactly as they are stated, and
+//! placebos, other motions held out and explanations with the same predictions are looked for.
 
 use super::budget::JUDGING_STEPS;
 use super::conclusion::conclude;
@@ -91,18 +91,9 @@ pub(super) fn diagnose_on(
         }
     }
     if found.may_go_on() {
-        let further = match found.evaluator.fork.take() {
-            Some(fork) => {
-                let (evaluator, found) = *fork;
-                Ok(FinishedSearch::further(evaluator, found))
-            }
-            None => {
-                // The first one's evaluator stands, whatever becomes of this one.
-                let evaluator = course.halt.until(|| evaluator(Reach::Everything));
-                evaluator.map(FinishedSearch::by)
-            }
-        };
-        found.take(further.ok());
+        // The first one's evaluator stands, whatever becomes of this one.
+        let further = course.halt.until(|| evaluator(Reach::Everything));
+        found.take(further.map(FinishedSearch::by).ok());
     }
     (found.judged(options.seed), split.clone())
 }
@@ -119,16 +110,10 @@ pub(super) struct FinishedSearch<'a> {
 }
 
 impl<'a> FinishedSearch<'a> {
-    pub fn by(evaluator: Evaluator<'a>) -> Self {
-        FinishedSearch::further(evaluator, SearchResults::default())
-    }
-
-    /// A search that goes on from what was found.
-    fn further(mut evaluator: Evaluator<'a>, mut found: SearchResults) -> Self {
+    pub fn by(mut evaluator: Evaluator<'a>) -> Self {
         let course = evaluator.course.clone();
         course.keep_time();
-        // What is ended before it begins has tried nothing.
-        found.at.get_or_insert(Stage::Alone);
+        let mut found = SearchResults::at_start();
         let halted = course.halt.until(|| evaluator.search(&mut found)).is_err();
         let mut left_out = Vec::new();
         if halted {
@@ -187,6 +172,7 @@ impl<'a> FinishedSearch<'a> {
     fn may_go_on(&mut self) -> bool {
         let is_needed = self.ended != SearchEnded::Tolerance
             && self.evaluator.most_effects > 1
+            && !self.evaluator.tries_all
             && self.evaluator.does(Strategy::SecondSearch)
             && !self.is_explained();
         let was_ended = !self.left_out.is_empty();
@@ -220,8 +206,7 @@ impl<'a> FinishedSearch<'a> {
             shows_alone,
         } = self;
         let course = evaluator.course.clone();
-        let again = evaluator.reach == Reach::Everything;
-        course.begin(Stage::Judging, again, JUDGING_STEPS);
+        course.begin(Stage::Judging, evaluator.round(), JUDGING_STEPS);
         let mut judging = course.judging(!left_out.is_empty());
         let own_fits = judging.part("the fit of each motion by itself", 0.25, || {
             let explanation = tried.explanation(&evaluator);

@@ -6,7 +6,8 @@ use crate::fitting::{BestSoFar, Halt, Progress, StopSwitch};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// What is done, one after the other; the search again where it explained nothing.
+/// What is done, one after the other; the search again, in other windows, where it explained
+/// nothing in windows that the model loses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Stage {
     Base,
@@ -60,23 +61,39 @@ impl Stage {
         }
     }
 
-    /// Share of a search that explains nothing, in thousandths of both searches and the judging:
+    /// Share of a diagnosis that explains nothing, in thousandths of its searches and the judging:
     /// measured on arms whose law is outside the library.
-    fn weight(self, again: bool) -> usize {
-        match (self, again) {
-            (Stage::Base, false) => 5,
-            (Stage::Alone, false) => 100,
-            (Stage::Values, false) => 25,
-            (Stage::Pairs, false) => 170,
-            (Stage::Larger, false) => 250,
-            (Stage::Base, true) => 0,
-            (Stage::Alone, true) => 0,
-            (Stage::Values, true) => 0,
-            (Stage::Pairs, true) => 150,
-            (Stage::Larger, true) => 220,
-            (Stage::Judging, _) => 80,
+    fn weight(self, round: Round) -> usize {
+        match (self, round) {
+            (Stage::Base, Round::First | Round::Only) => 20,
+            (Stage::Alone, Round::First) => 110,
+            (Stage::Values, Round::First) => 15,
+            (Stage::Pairs, Round::First) => 65,
+            (Stage::Larger, Round::First) => 115,
+            (Stage::Base, Round::Second) => 15,
+            (Stage::Alone, Round::Second) => 130,
+            (Stage::Values, Round::Second) => 15,
+            (Stage::Pairs, Round::Second) => 170,
+            (Stage::Larger, Round::Second) => 305,
+            (Stage::Alone, Round::Only) => 190,
+            (Stage::Values, Round::Only) => 20,
+            (Stage::Pairs, Round::Only) => 165,
+            (Stage::Larger, Round::Only) => 565,
+            (Stage::Judging, _) => 40,
         }
     }
+}
+
+/// Which search a stage belongs to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Round {
+    /// One that another may follow, in other windows.
+    #[default]
+    First,
+    /// That other one.
+    Second,
+    /// One that none follows.
+    Only,
 }
 
 /// Steps of progress in all.
@@ -107,7 +124,7 @@ pub(super) struct Course<'a> {
 
 #[derive(Default)]
 struct Steps {
-    again: bool,
+    round: Round,
     stage: Option<Stage>,
     /// Weights of the stages that are done or needless, and of those that were done.
     passed: f64,
@@ -147,11 +164,11 @@ impl<'a> Course<'a> {
         self.steps.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A stage begins, of the search or of the one done `again`, of so many steps if it does not
-    /// end early; all before it are done, or needless.
-    pub fn begin(&self, stage: Stage, again: bool, expected: usize) {
+    /// A stage of a search begins, of so many steps if it does not end early; all before it are
+    /// done, or needless.
+    pub fn begin(&self, stage: Stage, round: Round, expected: usize) {
         let mut steps = self.steps();
-        steps.pass(stage, again);
+        steps.pass(stage, round);
         steps.expected = expected;
         drop(steps);
         self.step(0);
@@ -230,18 +247,17 @@ impl<'a> Course<'a> {
 
 impl Steps {
     /// Passes the stages before this one.
-    fn pass(&mut self, stage: Stage, again: bool) {
+    fn pass(&mut self, stage: Stage, round: Round) {
         self.spent += self.in_stage();
-        let searched = |until: Stage, again: bool| -> usize {
+        let searched = |until: Stage, round: Round| -> usize {
             let before = Stage::SEARCH.into_iter().filter(|stage| *stage < until);
-            before.map(|stage| stage.weight(again)).sum()
+            before.map(|stage| stage.weight(round)).sum()
         };
-        self.again |= again;
-        let first = searched(Stage::Judging, false);
-        let passed = match (stage, self.again) {
-            (Stage::Judging, _) => first + searched(Stage::Judging, true),
-            (_, true) => first + searched(stage, true),
-            (_, false) => searched(stage, false),
+        self.round = round;
+        let passed = match (stage, round) {
+            (Stage::Judging, _) => TOTAL - stage.weight(round),
+            (_, Round::Second) => searched(Stage::Judging, Round::First) + searched(stage, round),
+            _ => searched(stage, round),
         };
         self.passed = self.passed.max(passed as f64);
         (self.stage, self.done) = (Some(stage), 0);
@@ -249,7 +265,7 @@ impl Steps {
 
     /// What of the stage's weight is done.
     fn in_stage(&self) -> f64 {
-        let weight = self.stage.map_or(0, |stage| stage.weight(self.again));
+        let weight = self.stage.map_or(0, |stage| stage.weight(self.round));
         let share = self.done as f64 / self.expected.max(1) as f64;
         weight as f64 * share.min(1.0)
     }
@@ -266,7 +282,7 @@ impl Steps {
         Progress {
             done: self.told,
             total: TOTAL,
-            what: if self.again && self.stage != Some(Stage::Judging) {
+            what: if self.round == Round::Second && self.stage != Some(Stage::Judging) {
                 format!("second search: {what}").into()
             } else {
                 what.into()
@@ -290,19 +306,19 @@ mod tests {
             told.lock().unwrap().push((progress.done, what));
         };
         let course = Course::new(options, &heard);
-        course.begin(Stage::Base, false, 2);
+        course.begin(Stage::Base, Round::First, 2);
         course.step(2);
-        course.begin(Stage::Alone, false, 10);
+        course.begin(Stage::Alone, Round::First, 10);
         course.step(5);
         // More than was expected, and then fewer.
         course.step(20);
-        course.begin(Stage::Pairs, false, 10);
+        course.begin(Stage::Pairs, Round::First, 10);
         course.step(1);
-        course.begin(Stage::Pairs, true, 1);
+        course.begin(Stage::Pairs, Round::Second, 1);
         course.step(1);
-        course.begin(Stage::Larger, true, 4);
+        course.begin(Stage::Larger, Round::Second, 4);
         course.step(4);
-        course.begin(Stage::Judging, true, 1);
+        course.begin(Stage::Judging, Round::Second, 1);
         course.step(1);
         told.into_inner().unwrap()
     }
@@ -323,15 +339,23 @@ mod tests {
             let before = &told[told.len() - 3];
             assert_eq!(before.1, "second search: sets of three effects");
             if within_s != Some(1e-3) {
-                assert_eq!(before.0, TOTAL - Stage::Judging.weight(true), "{told:?}");
+                assert_eq!(
+                    before.0,
+                    TOTAL - Stage::Judging.weight(Round::Second),
+                    "{told:?}"
+                );
             }
         }
     }
 
     #[test]
     fn the_weights_of_all_stages_are_the_whole() {
-        let searches = [false, true].map(|again| Stage::SEARCH.map(|stage| stage.weight(again)));
-        let all: usize = searches.iter().flatten().sum();
-        assert_eq!(all + Stage::Judging.weight(false), TOTAL);
+        let search = |round: Round| -> usize {
+            let stages = Stage::SEARCH.map(|stage| stage.weight(round));
+            stages.iter().sum()
+        };
+        let rest = TOTAL - Stage::Judging.weight(Round::First);
+        assert_eq!(search(Round::First) + search(Round::Second), rest);
+        assert_eq!(search(Round::Only), rest);
     }
 }

@@ -10,7 +10,7 @@ use super::budget::{
     BEAM, EVALUATION_STEPS, FAR_BEHIND, FINALISTS, FINISH, LOOK, SECOND_LOOKS, VALUE_STEPS,
     larger_steps, singles_steps,
 };
-use super::evaluator::{Evaluator, Reach, every_change};
+use super::evaluator::{Evaluator, every_change};
 use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
 use super::progress::Stage;
@@ -40,11 +40,7 @@ impl Evaluator<'_> {
         }
         for size in 2..=self.most_effects {
             if found.sizes.len() < size {
-                let goes_on = !self.is_done(found) && self.go_to(size, found);
-                if size == 2 {
-                    self.fork_from(found);
-                }
-                if !goes_on {
+                if self.is_done(found) || !self.go_to(size, found) {
                     break;
                 }
             } else {
@@ -73,16 +69,6 @@ impl Evaluator<'_> {
         found.at = None;
     }
 
-    /// Keeps where a search of everything would part from this one, if it would begin as this one
-    /// did: all that was found until then it would find again.
-    fn fork_from(&mut self, found: &SearchResults) {
-        let best = found.best.as_ref();
-        let is_explained = best.is_some_and(|best| self.is_explained_by(best));
-        if self.reach == Reach::Promising && self.follows_first && !is_explained {
-            self.fork = Some(Box::new((self.for_everything(), found.clone())));
-        }
-    }
-
     /// Tries every effect alone, then every value.
     fn begin(&mut self, found: &mut SearchResults) {
         found.at = Some(Stage::Alone);
@@ -96,16 +82,16 @@ impl Evaluator<'_> {
 
     /// Says that a stage begins, of so many steps.
     fn say(&self, stage: Stage, expected: usize) {
-        self.course
-            .begin(stage, self.reach == Reach::Everything, expected);
+        self.course.begin(stage, self.round(), expected);
     }
 
     /// Goes on to sets of another size, and says so.
     fn begin_size(&self, size: usize, found: &mut SearchResults) {
         let stage = Stage::of_size(size);
-        let beside = match self.reach {
-            Reach::Promising => 0,
-            Reach::Everything => self.candidates.len(),
+        let beside = if self.tries_all {
+            self.candidates.len()
+        } else {
+            0
         };
         found.at = Some(stage);
         self.say(stage, larger_steps(beside));
@@ -158,8 +144,8 @@ impl Evaluator<'_> {
         let tried = found.outcome();
         let explanation = tried.explanation(self);
         let is_explained = self.is_value_that_explains(explanation)
-            || match (best, self.reach) {
-                (Some(best), Reach::Everything) => self.is_explained_by(best),
+            || match (best, self.tries_all) {
+                (Some(best), true) => self.is_explained_by(best),
                 (best, _) => self.at_noise_floor(best.unwrap_or(&self.base)),
             };
         found.is_tolerated = !is_explained && self.tolerates(explanation);
@@ -226,7 +212,7 @@ impl Evaluator<'_> {
     /// Looks further for sets of the largest size where every candidate is to be tried, and the
     /// best leaves something to explain.
     fn grow_further(&mut self, found: &mut SearchResults) {
-        if let ([.., smaller, larger], Reach::Everything) = (&mut found.sizes[..], self.reach) {
+        if let ([.., smaller, larger], true) = (&mut found.sizes[..], self.tries_all) {
             self.try_all_beside(smaller, larger);
             self.take_evaluated();
         }

@@ -3,7 +3,7 @@
 /// A part of the search. `cargo xtask ablation` measures what it brings, and costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Strategy {
-    /// A second search that spares no candidate, where the first explains nothing.
+    /// Every candidate beside the leading sets, in other windows where the model loses the first.
     SecondSearch,
     /// Learning from motions held out that alone show something.
     Turns,

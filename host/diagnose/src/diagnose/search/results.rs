@@ -29,6 +29,14 @@ pub(in crate::diagnose) struct SearchResults {
 }
 
 impl SearchResults {
+    /// Those of a search that begins: what is ended before has tried nothing.
+    pub fn at_start() -> Self {
+        SearchResults {
+            at: Some(Stage::Alone),
+            ..SearchResults::default()
+        }
+    }
+
     /// What an explanation is chosen of: the best set alone of all sets.
     pub(super) fn outcome(&self) -> SearchOutcome {
         SearchOutcome {

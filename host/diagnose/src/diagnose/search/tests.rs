@@ -1,5 +1,6 @@
 use super::*;
 use crate::challenge::{Bench, Motions, bench};
+use crate::diagnose::evaluator::Reach;
 use crate::diagnose::pipeline::FinishedSearch;
 use crate::diagnose::progress::Course;
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};

@@ -3,6 +3,7 @@
 use super::tests::{all_but, arm, silent};
 use super::*;
 use crate::diagnose::DiagnoseOptions;
+use crate::diagnose::evaluator::Reach;
 use crate::diagnose::explanation::Explanation;
 
 /// The file's centre of mass is off by a third, which no friction says.
