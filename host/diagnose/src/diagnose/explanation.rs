@@ -5,7 +5,7 @@ use super::evaluator::Evaluator;
 use super::findings::{Fold, ResidualStructure, SearchEnded, Verdict};
 use super::hypothesis::Hypothesis;
 use super::measured_value::values_behind;
-use super::stability::most_raised;
+use super::stability::{most_left_rad, most_raised};
 use super::verdict::{Kind, Signs};
 
 /// Standard uncertainties beyond which a file is not believed to be wrong if something nearer to it
@@ -279,6 +279,7 @@ impl<'a> VerdictEvidence<'a> {
             free_form_low: structure.map_or(0.0, |s| s.explainable_low),
             per_motion_reduction: self.per_motion_reduction.unwrap_or(0.0),
             worst_fold: most_raised(&self.folds),
+            worst_fold_floors: most_left_rad(&self.folds) / evaluator.training.floor(),
             is_examined: self.left_out.is_empty(),
             is_provable: self.shows_alone.is_empty(),
             spans_bounds: kind == Kind::Effects && chosen.spans_bounds(&evaluator.training),

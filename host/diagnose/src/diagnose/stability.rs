@@ -58,6 +58,12 @@ pub(super) fn most_raised(folds: &[Fold]) -> f64 {
     raised.fold(1.0, f64::max)
 }
 
+/// Largest error that an explanation leaves of motions held out in turn, rad; 0 where none are.
+pub(super) fn most_left_rad(folds: &[Fold]) -> f64 {
+    let left = folds.iter().map(|fold| fold.after_rad);
+    left.fold(0.0, f64::max)
+}
+
 /// That an explanation gains nothing on some of the motions held out in turn.
 pub(super) fn warning(folds: &[Fold]) -> Option<String> {
     let lost = folds.iter().filter(|fold| !fold.gains).count();
@@ -99,6 +105,7 @@ mod tests {
     fn the_fold_that_is_raised_most_counts_and_is_told() {
         let good = [fold(0.1, 0.01), fold(0.1, 0.02)];
         assert_eq!(most_raised(&good), 1.0);
+        assert_eq!([most_left_rad(&good), most_left_rad(&[])], [0.02, 0.0]);
         assert_eq!(warning(&good), None);
         let mixed = [fold(0.1, 0.01), fold(0.02, 0.025), fold(0.02, 0.024)];
         assert_eq!(most_raised(&mixed), 0.025 / 0.02);

@@ -37,6 +37,8 @@ pub(super) struct Signs {
     /// Largest factor by which it raises the error of motions held out in turn; 1 where it raises
     /// none.
     pub worst_fold: f64,
+    /// The most that it leaves of motions held out in turn, in floors; 0 where none are.
+    pub worst_fold_floors: f64,
     /// Whether an effect has a value of which the motions say nothing: its interval reaches from
     /// bound to bound.
     pub spans_bounds: bool,
@@ -108,6 +110,7 @@ impl Signs {
                     || self.leaves_much()
                     || self.values_vary()
                     || self.worst_fold > MOST_RAISED
+                    || self.worst_fold_floors > MOST_FLOORS
                     || self.spans_bounds
             }
             // Motions that were fitted show too little of what is left; what they show is there.

@@ -13,6 +13,7 @@ const FOUND: Signs = Signs {
     free_form_low: 0.0,
     per_motion_reduction: 0.0,
     worst_fold: 1.0,
+    worst_fold_floors: 1.0,
     spans_bounds: false,
     placebo_ranks: false,
     rivals: false,
@@ -69,6 +70,21 @@ fn what_makes_other_held_out_motions_worse_is_not_named() {
     assert_eq!(raised(1.4, ABOVE), Verdict::Named);
     assert_eq!(raised(1.6, ABOVE), Verdict::Unexplained);
     assert_eq!(raised(1.6, FOUND), Verdict::Named);
+}
+
+/// What is true leaves hardly more than the noise whichever motions are held out.
+#[test]
+fn what_leaves_much_of_other_held_out_motions_is_not_named() {
+    let left = |worst_fold_floors, signs| {
+        Signs {
+            worst_fold_floors,
+            ..signs
+        }
+        .verdict()
+    };
+    assert_eq!(left(1.9, ABOVE), Verdict::Named);
+    assert_eq!(left(2.1, ABOVE), Verdict::Unexplained);
+    assert_eq!(left(2.1, FOUND), Verdict::Named);
 }
 
 #[test]
