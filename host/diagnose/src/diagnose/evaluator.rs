@@ -11,6 +11,7 @@ use super::options::DiagnoseOptions;
 use super::progress::{Course, Round, Stage};
 use super::residual_structure::residual_structure;
 use super::strategy::Strategy;
+use super::turns::shows_something;
 use super::values::as_given;
 use crate::fitting::{
     BestSoFar, Candidate, Fit, FitOptions, FitProblem, Horizon, PredictionChange, Sizes, changes,
@@ -25,7 +26,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reach {
     /// Windows of a second; to larger sets the candidates that promise most, and every one where
-    /// the base model follows these windows.
+    /// the base model follows these windows, and fitted motions show what is missing.
     Promising,
     /// Windows that the base model follows; to larger sets every candidate.
     Everything,
@@ -120,8 +121,6 @@ impl<'a> Evaluator<'a> {
         let start = SearchStart::new(model, &whole, &horizons, few, options.seed);
         let (search_horizon, search) = (start.horizon, start.data);
         let is_last = is_only || is_followed(&start.fit, &search);
-        let goes_on = !options.skipped.contains(&Strategy::SecondSearch);
-        let tries_all = reach == Reach::Everything || goes_on && is_last;
         let model = &start.model;
         let mut base = Hypothesis::new(Vec::new(), start.fit);
         let training = whole.recut(longest);
@@ -142,6 +141,10 @@ impl<'a> Evaluator<'a> {
             FitOptions::iterations(FINISH),
         );
         let changes = every_change(&base, &candidates, &search);
+        let goes_on = !options.skipped.contains(&Strategy::SecondSearch);
+        // Others may be learned from first, where the fitted ones show nothing.
+        let is_taught = base.evaluation.as_ref().is_some_and(shows_something);
+        let tries_all = reach == Reach::Everything || goes_on && is_last && is_taught;
         Evaluator {
             search,
             training,

@@ -4,6 +4,7 @@
 //! shows.
 
 use super::evaluator::Evaluator;
+use super::hypothesis::Evaluation;
 use super::verdict::MOST_NOMINAL;
 use crate::motion::{Motion, Split};
 
@@ -24,14 +25,23 @@ pub(super) fn turns(evaluator: &Evaluator, split: &Split, may_prove: bool) -> Ve
     let Some(evaluation) = &evaluator.base.evaluation else {
         return Vec::new();
     };
-    let is_shown = |mean: &f64| mean.sqrt() > MOST_NOMINAL;
-    let (fitted, held_out) = (&evaluation.training, &evaluation.held_out);
-    let means = held_out.as_ref().map(|errors| errors.motion_means());
-    if fitted.motion_means().iter().any(is_shown) {
+    if shows_something(evaluation) {
         return Vec::new();
     }
+    let held_out = evaluation.held_out.as_ref();
+    let means = held_out.map(|errors| errors.motion_means());
     let shown: Vec<bool> = means.iter().flatten().map(is_shown).collect();
     splits(split, &shown, may_prove)
+}
+
+/// Whether a fitted motion shows something beyond noise.
+pub(super) fn shows_something(evaluation: &Evaluation) -> bool {
+    let fitted = evaluation.training.motion_means();
+    fitted.iter().any(is_shown)
+}
+
+fn is_shown(mean: &f64) -> bool {
+    mean.sqrt() > MOST_NOMINAL
 }
 
 /// The same where these of the motions held out show something.
