@@ -120,7 +120,7 @@ impl<'a> Evaluator<'a> {
         }
         let start = SearchStart::new(model, &whole, &horizons, few, options.seed);
         let (search_horizon, search) = (start.horizon, start.data);
-        let is_last = is_only || is_followed(&start.fit, &search);
+        let is_followed = is_only || is_followed(&start.fit, &search);
         let model = &start.model;
         let mut base = Hypothesis::new(Vec::new(), start.fit);
         let training = whole.recut(longest);
@@ -141,10 +141,10 @@ impl<'a> Evaluator<'a> {
             FitOptions::iterations(FINISH),
         );
         let changes = every_change(&base, &candidates, &search);
-        let goes_on = !options.skipped.contains(&Strategy::SecondSearch);
-        // Others may be learned from first, where the fitted ones show nothing.
-        let is_taught = base.evaluation.as_ref().is_some_and(shows_something);
-        let tries_all = reach == Reach::Everything || goes_on && is_last && is_taught;
+        let may_go_on = !options.skipped.contains(&Strategy::SecondSearch);
+        // Where the fitted motions show nothing, others are learned from first.
+        let shows = base.evaluation.as_ref().is_some_and(shows_something);
+        let tries_all = reach == Reach::Everything || may_go_on && is_followed && shows;
         Evaluator {
             search,
             training,

@@ -2,7 +2,7 @@ use super::*;
 use crate::challenge::{Bench, Motions, bench};
 use crate::diagnose::evaluator::Reach;
 use crate::diagnose::pipeline::FinishedSearch;
-use crate::diagnose::progress::Course;
+use crate::diagnose::progress::{Course, Round};
 use crate::diagnose::{DiagnoseOptions, Verdict, diagnose};
 use crate::fitting::{Candidate, Fit, Horizon, fit_start_states};
 use crate::log::{LogRequest, read};
@@ -191,6 +191,26 @@ fn the_search_takes_windows_that_the_model_follows() {
     // Forty samples at least.
     let shorter = horizon(&light, Reach::Everything).seconds().unwrap();
     assert!((0.39..0.41).contains(&shorter), "{shorter}");
+}
+
+/// Where the model loses the windows others are searched next; where its motions show nothing,
+/// others are learned from first.
+#[test]
+fn one_search_tries_all_where_its_windows_are_followed_and_show_something() {
+    let (model, training, held_out) = arm(1, &["cogging"]);
+    let round = |mass: f64, motions: &[Motion]| {
+        let mut model = model.clone();
+        model.links[0].mass_kg *= mass;
+        model.links[0].inertia_kg_m2 *= mass;
+        let (all, options) = (motions.to_vec(), DiagnoseOptions::default());
+        let (others, reach) = (held_out.clone(), Reach::Promising);
+        let evaluator = Evaluator::new(&model, all, others, &options, reach, silent());
+        evaluator.round()
+    };
+    assert_eq!(round(1.0, &training), Round::Only);
+    assert_eq!(round(0.1, &training), Round::First);
+    let (_, nominal, _) = arm(1, &[]);
+    assert_eq!(round(1.0, &nominal), Round::First);
 }
 
 /// An arm whose gap is open where most short windows begin: what its readings say there is not
