@@ -51,13 +51,10 @@ pub(super) fn singles_steps(candidates: usize) -> usize {
     FIRST_LOOK_STEPS * candidates + FINALS_STEPS
 }
 
-/// Steps of the sets of a size: partners of the beam; a look at so many candidates around each of
-/// the leading sets.
-pub(super) fn larger_steps(candidates: usize) -> usize {
-    let beside = match candidates {
-        0 => 0,
-        _ => 2 * FIRST_LOOK_STEPS * candidates + FINALS_STEPS,
-    };
+/// Steps of the sets of a size: partners of the beam; a look at so many candidates beside each of
+/// the leading sets, where all are tried.
+pub(super) fn larger_steps(candidates: Option<usize>) -> usize {
+    let beside = candidates.map_or(0, |count| 2 * FIRST_LOOK_STEPS * count + FINALS_STEPS);
     BEAM * PARTNERS + FINALS_STEPS + beside + PRUNING_STEPS
 }
 /// Steps of the judging: its parts.

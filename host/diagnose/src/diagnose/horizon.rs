@@ -1,7 +1,7 @@
 //! Over how long a run candidates are sought, and over how long they are judged.
 
 use super::block_errors::{gain, paired};
-use super::budget::{EVALUATE, FAR_BEHIND, FINISH};
+use super::budget::{EVALUATE, FAR_BEHIND, FINISH, HOPELESS};
 use super::evaluator::Evaluator;
 use super::hypothesis::Hypothesis;
 use super::strategy::Strategy;
@@ -69,15 +69,16 @@ impl Evaluator<'_> {
     /// there are, the more begin where the samples around them tell the start state badly: in a
     /// play, or where a joint just breaks away.
     pub fn settle_horizon(&mut self, sizes: &mut [Vec<Hypothesis>]) {
-        let all = sizes.iter().flatten();
-        let mut leaders: Vec<Hypothesis> =
-            all.filter(|h| h.evaluation.is_some()).cloned().collect();
-        leaders.sort_by(|a, b| a.deciding_mean().total_cmp(&b.deciding_mean()));
-        leaders.truncate(LEADERS);
-        if self.horizon_given {
+        if self.horizon_given || !self.does(Strategy::LongerHorizon) {
             return;
         }
-        if self.does(Strategy::LongerHorizon) {
+        let all = sizes.iter().flatten();
+        // What leaves many times the noise over shorter runs leaves more than noise over longer ones.
+        let leaders = all.filter(|h| h.evaluation.is_some() && h.deciding_mean() <= HOPELESS);
+        let mut leaders: Vec<Hypothesis> = leaders.cloned().collect();
+        leaders.sort_by(|a, b| a.deciding_mean().total_cmp(&b.deciding_mean()));
+        leaders.truncate(LEADERS);
+        if !leaders.is_empty() {
             self.lengthen_horizon(leaders, sizes);
         }
     }

@@ -140,29 +140,6 @@ fn an_effect_that_is_not_needed_leaves_the_set() {
     assert_eq!(alone, [["cogging@1"], ["viscous@1"]]);
 }
 
-/// An arm that lacks an offset of its torque and cogging: without the offset it moves so
-/// differently that cogging changes another motion.
-#[test]
-fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
-    let evaluator = evaluator(12, &["cogging", "torque_offset"]);
-    let offset = candidate(&evaluator, "torque_offset");
-    let finish = FitOptions::iterations(FINISH);
-    let alone = (evaluator.base).with(offset, &[-0.04], &evaluator.search, finish);
-    let leaves_rad = |sets: &[Hypothesis]| {
-        let with = sets.iter().filter(|set| set.names()[1] == "cogging@1");
-        with.map(Hypothesis::deciding_rms_rad)
-            .fold(f64::INFINITY, f64::min)
-    };
-    let by_base = evaluator.grow(std::slice::from_ref(&alone));
-    assert!(leaves_rad(&by_base) > 0.005);
-    // Every other effect, not those alone that promise most.
-    let mut all = Vec::new();
-    evaluator.try_all_beside(std::slice::from_ref(&alone), &mut all);
-    let beside = |sets: &[Hypothesis]| sets.iter().filter(|set| set.set[0] == offset).count();
-    assert!(beside(&all) > 30, "{}", beside(&all));
-    assert!(leaves_rad(&all) < 0.002);
-}
-
 /// Short windows may hide what longer ones that it was searched on show.
 #[test]
 fn a_set_that_loses_the_windows_of_the_search_is_not_the_end() {

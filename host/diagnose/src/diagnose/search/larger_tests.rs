@@ -1,0 +1,40 @@
+//! Where larger sets are looked for.
+
+use super::tests::{candidate, evaluator};
+use super::*;
+
+/// An arm that lacks an offset of its torque and cogging: without the offset it moves so
+/// differently that cogging changes another motion.
+#[test]
+fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
+    let mut evaluator = evaluator(12, &["cogging", "torque_offset"]);
+    let offset = candidate(&evaluator, "torque_offset");
+    let finish = FitOptions::iterations(FINISH);
+    let alone = (evaluator.base).with(offset, &[-0.04], &evaluator.search, finish);
+    let leaves_rad = |sets: &[Hypothesis]| {
+        let with = sets.iter().filter(|set| set.names()[1] == "cogging@1");
+        with.map(Hypothesis::deciding_rms_rad)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let by_base = evaluator.grow(std::slice::from_ref(&alone));
+    assert!(leaves_rad(&by_base) > 0.005);
+    // Every other effect, not those alone that promise most.
+    assert!(evaluator.tries_all);
+    let mut found = SearchResults {
+        sizes: vec![vec![alone], Vec::new()],
+        ..SearchResults::default()
+    };
+    evaluator.grow_further(&mut found);
+    let pairs = &found.sizes[1];
+    let beside = pairs.iter().filter(|pair| pair.set[0] == offset).count();
+    assert!(beside > 30, "{beside}");
+    assert!(leaves_rad(pairs) < 0.002);
+    // Beside pairs only while none explains most.
+    found.best = leader(pairs).cloned();
+    assert!(!evaluator.is_astray(&found));
+    found.sizes.push(Vec::new());
+    evaluator.grow_further(&mut found);
+    assert_eq!(found.sizes[2].len(), 0);
+    found.best = None;
+    assert!(evaluator.is_astray(&found));
+}
