@@ -88,7 +88,7 @@ impl Evaluator<'_> {
     /// Goes on to sets of another size, and says so.
     fn begin_size(&self, size: usize, found: &mut SearchResults) {
         let stage = Stage::of_size(size);
-        let tries_all = self.tries_all && (size == 2 || self.is_astray(found));
+        let tries_all = self.tries_beside(size, found);
         let beside = tries_all.then_some(self.candidates.len());
         found.at = Some(stage);
         self.say(stage, larger_steps(beside));
@@ -207,15 +207,20 @@ impl Evaluator<'_> {
     }
 
     /// Looks further for sets of the largest size where every candidate is to be tried, and the
-    /// best leaves something to explain. Sets of three only grow where a set explains most: of
-    /// twenty hidden ones none was found otherwise, and to try every candidate beside pairs takes a
-    /// third of the time of what nothing explains.
+    /// best leaves something to explain.
     fn grow_further(&mut self, found: &mut SearchResults) {
-        let tries_all = self.tries_all && (found.sizes.len() == 2 || self.is_astray(found));
+        let tries_all = self.tries_beside(found.sizes.len(), found);
         if let ([.., smaller, larger], true) = (&mut found.sizes[..], tries_all) {
             self.try_all_beside(smaller, larger);
             self.take_evaluated();
         }
+    }
+
+    /// Whether every candidate is tried for sets of a size. Those of three only grow where a set
+    /// explains most: of twenty hidden ones none was found otherwise, and to try every candidate
+    /// beside pairs takes a third of the time of what nothing explains.
+    fn tries_beside(&self, size: usize, found: &SearchResults) -> bool {
+        self.tries_all && (size == 2 || self.is_astray(found))
     }
 
     /// Whether no set that pays explains most of what the base model leaves where it counts: all may
