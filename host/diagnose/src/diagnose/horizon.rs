@@ -73,7 +73,8 @@ impl Evaluator<'_> {
             return;
         }
         let all = sizes.iter().flatten();
-        // What leaves many times the noise over shorter runs leaves more than noise over longer ones.
+        // What leaves more than six times the noise over shorter runs is not fitted over longer
+        // ones: it takes long, and leaves more than noise there, too.
         let leaders = all.filter(|h| h.evaluation.is_some() && h.deciding_mean() <= HOPELESS);
         let mut leaders: Vec<Hypothesis> = leaders.cloned().collect();
         leaders.sort_by(|a, b| a.deciding_mean().total_cmp(&b.deciding_mean()));

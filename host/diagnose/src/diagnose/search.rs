@@ -223,8 +223,8 @@ impl Evaluator<'_> {
         self.tries_all && (size == 2 || self.is_astray(found))
     }
 
-    /// Whether no set that pays explains most of what the base model leaves where it counts: all may
-    /// have ended in false valleys, as where a model without friction whirls.
+    /// Whether no set that pays explains most of what the base model leaves where it counts: all
+    /// may have ended in false valleys, as where a model without friction whirls.
     fn is_astray(&self, found: &SearchResults) -> bool {
         let best = found.best.as_ref().unwrap_or(&self.base);
         best.deciding_mean() > MOST_LEFT * self.base.deciding_mean()

@@ -31,10 +31,10 @@ fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
     assert!(leaves_rad(pairs) < 0.002);
     // Beside pairs only while none explains most.
     found.best = leader(pairs).cloned();
-    assert!(!evaluator.is_astray(&found));
+    assert!(!evaluator.tries_beside(3, &found));
     found.sizes.push(Vec::new());
     evaluator.grow_further(&mut found);
     assert_eq!(found.sizes[2].len(), 0);
     found.best = None;
-    assert!(evaluator.is_astray(&found));
+    assert!(evaluator.tries_beside(3, &found));
 }
