@@ -6,7 +6,7 @@ use crate::fitting::{
     Candidate, Fit, FitOptions, FitProblem, choose_by_other_motions, fit, fit_start_states,
     intervals, intervals_of, polish,
 };
-use crate::model::{Model, ParameterPath};
+use crate::model::{EffectInstance, Model, ParameterPath};
 use std::cmp::Ordering;
 
 /// A fitted set of effects.
@@ -305,6 +305,27 @@ impl Hypothesis {
             let (low, high) = path.bounds(&fit.model);
             low.is_finite() && high.is_finite() && interval.low <= low && interval.high >= high
         })
+    }
+
+    /// An effect of the set as it is fitted.
+    pub fn added_effect(&self, place: usize) -> &EffectInstance {
+        let effects = &self.fit().model.effects;
+        &effects[effects.len() - self.set.len() + place]
+    }
+
+    /// The places in the set of effects with a value at the edge of the possible.
+    pub fn effects_on_bound(&self) -> Vec<usize> {
+        let on_bound = self.fit().on_bound();
+        let mut first = on_bound.len() - self.added_values();
+        let mut is_on_bound = |effect: &Candidate| {
+            let own = first..first + effect.parameters().len();
+            first = own.end;
+            on_bound[own].contains(&true)
+        };
+        let places = 0..self.set.len();
+        places
+            .filter(|place| is_on_bound(&self.set[*place]))
+            .collect()
     }
 
     /// Whether an added effect has a value at the edge of the possible: it vanishes there, or

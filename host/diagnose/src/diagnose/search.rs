@@ -74,7 +74,8 @@ impl Evaluator<'_> {
         found.at = Some(Stage::Alone);
         let expected = singles_steps(self.candidates.len());
         self.say(Stage::Alone, expected);
-        let singles = self.singles();
+        let mut singles = self.singles();
+        self.put_plainer(&mut singles);
         self.keep(found, |found| found.sizes.push(singles));
         found.best = self.smallest_that_pays(&found.sizes);
         self.search_values(found);
@@ -98,7 +99,8 @@ impl Evaluator<'_> {
     fn go_to(&mut self, size: usize, found: &mut SearchResults) -> bool {
         self.begin_size(size, found);
         found.before = found.best.as_ref().map(|best| best.set.len());
-        let larger = self.grow(&found.sizes[size - 2]);
+        let mut larger = self.grow(&found.sizes[size - 2]);
+        self.put_plainer(&mut larger);
         if larger.is_empty() {
             return false;
         }
@@ -336,6 +338,8 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
     });
     leaders.collect::<Vec<_>>().into_iter().rev()
 }
+#[cfg(test)]
+mod whirling_tests;
 
 #[cfg(test)]
 mod drive_lag_tests;

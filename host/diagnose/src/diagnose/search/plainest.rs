@@ -4,6 +4,8 @@ use super::super::budget::{FINISH, LOOK};
 use super::super::evaluator::Evaluator;
 use super::super::hypothesis::Hypothesis;
 use super::super::strategy::Strategy;
+use super::leader;
+use super::results::put_among;
 use crate::fitting::{
     Candidate, FitOptions, FitProblem, ProjectedResidual, changes_like, intervals,
 };
@@ -22,6 +24,47 @@ impl Evaluator<'_> {
         whole
     }
 
+    /// Puts beside the leader of a size, where a law of it rests on a bound, the sets with a plainer
+    /// one in its place that begin with its values: what is there may be what that law comes to on
+    /// its bound, and no short fit find it from elsewhere.
+    pub(super) fn put_plainer(&self, of_size: &mut Vec<Hypothesis>) {
+        let Some(whole) = leader(of_size).filter(|_| self.does(Strategy::PlainestLaw)) else {
+            return;
+        };
+        let on_bound = whole.effects_on_bound().into_par_iter();
+        let mut found: Vec<Hypothesis> = on_bound
+            .flat_map_iter(|leaving| self.with_its_values(whole, leaving))
+            .collect();
+        self.finish_found(&mut found);
+        put_among(of_size, found);
+    }
+
+    /// The set with one effect replaced by each that needs no other values than some of its own.
+    fn with_its_values(&self, whole: &Hypothesis, leaving: usize) -> Vec<Hypothesis> {
+        let out = whole.set[leaving];
+        let values = whole.added_effect(leaving).values.clone();
+        let rest = whole.without(leaving, &self.base, &self.search, 0);
+        let plainer = self.candidates.iter().filter_map(|candidate| {
+            let is_one = candidate.joint == out.joint && self.is_new(&rest, *candidate, &[]);
+            let values = values_of(*candidate, out, &values).filter(|_| is_one)?;
+            Some(rest.with(
+                *candidate,
+                &values,
+                &self.search,
+                FitOptions::iterations(LOOK),
+            ))
+        });
+        plainer.collect()
+    }
+
+    /// Fits sets to the end, and evaluates them.
+    fn finish_found(&self, sets: &mut [Hypothesis]) {
+        sets.par_iter_mut().for_each(|set| {
+            set.resume(&self.search, FitOptions::iterations(FINISH));
+            self.evaluate_found(set);
+        });
+    }
+
     /// The best set with one plainer law that does as well.
     fn plainer_law(&self, whole: &Hypothesis) -> Option<Hypothesis> {
         let vague = vague_effects(whole, &self.training);
@@ -29,10 +72,7 @@ impl Evaluator<'_> {
             .into_par_iter()
             .flat_map_iter(|leaving| self.with_plainer(whole, leaving))
             .collect();
-        found.par_iter_mut().for_each(|set| {
-            set.resume(&self.search, FitOptions::iterations(FINISH));
-            self.evaluate_found(set);
-        });
+        self.finish_found(&mut found);
         found.retain(|set| {
             self.improves(&self.base, set) && !self.clearly_worse(set, whole, &self.base)
         });
@@ -63,6 +103,20 @@ fn is_plainer(candidate: Candidate, than: Candidate) -> bool {
     candidate.joint == than.joint
         && site(candidate) == site(than)
         && candidate.parameters().len() < than.parameters().len()
+}
+
+/// Values of a plainer effect among another's, by their keys; `None` where it needs others, or as
+/// many.
+fn values_of(plainer: Candidate, than: Candidate, values: &[f64]) -> Option<Vec<f64>> {
+    let known = than.parameters();
+    let own = plainer.parameters().iter().map(|own| {
+        let place = known
+            .iter()
+            .position(|parameter| parameter.key == own.key)?;
+        Some(values[place])
+    });
+    let own = own.collect::<Option<Vec<f64>>>()?;
+    (!own.is_empty() && own.len() < known.len()).then_some(own)
 }
 
 /// The places in a set of effects of several values of which one is not determined: its interval

@@ -11,7 +11,7 @@ use crate::motion::Motion;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-const REACH: Reach = Reach::Promising;
+pub(super) const REACH: Reach = Reach::Promising;
 
 /// The model of a virtual arm that hides effects, and its motions to fit and held out.
 pub(in crate::diagnose) fn arm(
