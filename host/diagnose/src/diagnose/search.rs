@@ -238,6 +238,7 @@ impl Evaluator<'_> {
     fn try_all_beside(&self, smaller: &[Hypothesis], larger: &mut Vec<Hypothesis>) {
         let first = smaller.iter().min_by(|a, b| Hypothesis::by_error(a, b));
         let mut leading: Vec<&Hypothesis> = first.into_iter().chain(leader(smaller)).collect();
+            self.restart_bent(&mut hypotheses);
         leading.dedup_by(|a, b| a.adds(&b.set));
         let found = leading.into_iter().flat_map(|set| {
             let mut beside = self.candidates.clone();
@@ -269,7 +270,7 @@ impl Evaluator<'_> {
 
     /// Sorts hypotheses by training error and fits the best to the end: many get a second look, few
     /// go on.
-    fn successive_halving(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
+    pub(super) fn successive_halving(&self, mut hypotheses: Vec<Hypothesis>) -> Vec<Hypothesis> {
         let rounds = [
             (SECOND_LOOKS, FitOptions::iterations(LOOK).rough()),
             (FINALISTS, FitOptions::iterations(FINISH)),
@@ -323,6 +324,8 @@ fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
 /// The one that leaves least where it counts.
 fn leader(of_size: &[Hypothesis]) -> Option<&Hypothesis> {
     let by_error =
+#[cfg(test)]
+mod bent_tests;
         |a: &&Hypothesis, b: &&Hypothesis| a.deciding_mean().total_cmp(&b.deciding_mean());
     of_size.iter().min_by(by_error)
 }
