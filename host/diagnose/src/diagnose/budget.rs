@@ -20,6 +20,8 @@ pub(super) const SECOND_LOOKS: usize = 3 * FINALISTS;
 pub(super) const BEAM: usize = 3;
 /// Partners tried for each set of the beam.
 pub(super) const PARTNERS: usize = 5;
+/// Candidates simulated on top of a set, to choose its partners from.
+pub(super) const SIMULATED: usize = 40;
 /// More candidates than three joints have: most act where nothing is missing.
 pub(super) const MANY: usize = 120;
 /// Fewer training samples than this are few.

@@ -1,7 +1,8 @@
 //! Where larger sets are looked for.
 
-use super::tests::{candidate, evaluator};
+use super::tests::{candidate, evaluator, fitted};
 use super::*;
+use crate::diagnose::budget::PARTNERS;
 
 /// An arm that lacks an offset of its torque and cogging: without the offset it moves so
 /// differently that cogging changes another motion.
@@ -35,6 +36,19 @@ fn a_partner_is_sought_by_what_it_changes_beside_the_set() {
     found.sizes.push(Vec::new());
     evaluator.grow_further(&mut found);
     assert_eq!(found.sizes[2].len(), 0);
-    found.best = None;
-    assert!(evaluator.tries_beside(3, &found));
+}
+
+/// Load-dependent friction, an angle and stiction: in the prediction without the first two, which
+/// is another motion, two dozen effects promise more than stiction does.
+#[test]
+fn a_partner_is_chosen_by_what_it_changes_with_the_set() {
+    let evaluator = evaluator(3_400_001, &["com_angle", "load_friction", "stribeck"]);
+    let pair = fitted(
+        &evaluator,
+        &["load_friction", "com_angle"],
+        [&[0.2], &[0.1]],
+    );
+    let partners = evaluator.partners(&pair, &[]);
+    assert_eq!(partners[0].candidate, candidate(&evaluator, "stribeck"));
+    assert_eq!(partners.len(), PARTNERS);
 }

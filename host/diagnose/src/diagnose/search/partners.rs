@@ -1,6 +1,6 @@
 //! Partners of a set: which candidates promise most on top of it.
 
-use super::super::budget::PARTNERS;
+use super::super::budget::{PARTNERS, SIMULATED};
 use super::super::evaluator::Evaluator;
 use super::super::hypothesis::Hypothesis;
 use crate::fitting::{Candidate, InitialGuess, PredictionChange, ProjectedResidual, changes_like};
@@ -9,8 +9,9 @@ use rayon::prelude::*;
 impl Evaluator<'_> {
     /// The most promising guesses on top of a hypothesis that make a set not yet tried.
     ///
-    /// Which candidates promise most shows in what they change in the base model's prediction; only
-    /// those are simulated on top of the hypothesis.
+    /// They are chosen by what they change in the prediction with the set: without it a model may
+    /// move so differently that they change another motion. Of many candidates only those are
+    /// simulated on top of it that promise something in the base model's prediction.
     pub(super) fn partners(&self, from: &Hypothesis, tried: &[Hypothesis]) -> Vec<InitialGuess> {
         let residual = ProjectedResidual::new(&from.search);
         let is_new = |changes: &&Vec<PredictionChange>| {
@@ -24,7 +25,7 @@ impl Evaluator<'_> {
         });
         let mut promising: Vec<(&PredictionChange, f64)> = gains.collect();
         promising.sort_by(|a, b| b.1.total_cmp(&a.1));
-        promising.truncate(2 * PARTNERS);
+        promising.truncate(SIMULATED);
         let simulated = promising.par_iter().filter_map(|(like, _)| {
             let changes = changes_like(&from.search, like, &self.search);
             residual.guesses(&changes).into_iter().next()
