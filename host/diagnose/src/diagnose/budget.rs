@@ -13,11 +13,11 @@ pub(super) const FAR_BEHIND: f64 = 9.0;
 /// error, is taken no further.
 pub(super) const HOPELESS: f64 = 36.0;
 /// Finalists of each size.
-pub(super) const FINALISTS: usize = 4;
+pub(super) const FINALISTS: usize = 6;
 /// Hypotheses that get a second look.
 pub(super) const SECOND_LOOKS: usize = 3 * FINALISTS;
 /// Sets from which larger ones grow.
-pub(super) const BEAM: usize = 3;
+pub(super) const BEAM: usize = 5;
 /// Partners tried for each set of the beam.
 pub(super) const PARTNERS: usize = 5;
 /// Candidates simulated on top of a set, to choose its partners from.

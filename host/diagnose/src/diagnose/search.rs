@@ -15,7 +15,7 @@ use super::explanation::Explanation;
 use super::hypothesis::Hypothesis;
 use super::progress::Stage;
 use super::strategy::Strategy;
-use super::verdict::{FAR_OFF, MOST_LEFT};
+use super::verdict::FAR_OFF;
 use crate::fitting::{FitOptions, InitialGuess};
 use rayon::prelude::*;
 
@@ -89,7 +89,7 @@ impl Evaluator<'_> {
     /// Goes on to sets of another size, and says so.
     fn begin_size(&self, size: usize, found: &mut SearchResults) {
         let stage = Stage::of_size(size);
-        let tries_all = self.tries_beside(size, found);
+        let tries_all = self.tries_all && size == 2;
         let beside = tries_all.then_some(self.candidates.len());
         found.at = Some(stage);
         self.say(stage, larger_steps(beside));
@@ -208,28 +208,12 @@ impl Evaluator<'_> {
         put_among(fewer, rests.collect());
     }
 
-    /// Looks further for sets of the largest size where every candidate is to be tried, and the
-    /// best leaves something to explain.
+    /// Looks further for pairs where every candidate is to be tried.
     fn grow_further(&mut self, found: &mut SearchResults) {
-        let tries_all = self.tries_beside(found.sizes.len(), found);
-        if let ([.., smaller, larger], true) = (&mut found.sizes[..], tries_all) {
+        if let ([smaller, larger], true) = (&mut found.sizes[..], self.tries_all) {
             self.try_all_beside(smaller, larger);
             self.take_evaluated();
         }
-    }
-
-    /// Whether every candidate is tried for sets of a size. Those of three only grow where a set
-    /// explains most: of twenty hidden ones none was found otherwise, and to try every candidate
-    /// beside pairs takes a third of the time of what nothing explains.
-    fn tries_beside(&self, size: usize, found: &SearchResults) -> bool {
-        self.tries_all && (size == 2 || self.is_astray(found))
-    }
-
-    /// Whether no set that pays explains most of what the base model leaves where it counts: all
-    /// may have ended in false valleys, as where a model without friction whirls.
-    fn is_astray(&self, found: &SearchResults) -> bool {
-        let best = found.best.as_ref().unwrap_or(&self.base);
-        best.deciding_mean() > MOST_LEFT * self.base.deciding_mean()
     }
 
     /// Tries every candidate on top of the sets that lead, one in the windows of the search and one
@@ -238,7 +222,6 @@ impl Evaluator<'_> {
     fn try_all_beside(&self, smaller: &[Hypothesis], larger: &mut Vec<Hypothesis>) {
         let first = smaller.iter().min_by(|a, b| Hypothesis::by_error(a, b));
         let mut leading: Vec<&Hypothesis> = first.into_iter().chain(leader(smaller)).collect();
-            self.restart_bent(&mut hypotheses);
         leading.dedup_by(|a, b| a.adds(&b.set));
         let found = leading.into_iter().flat_map(|set| {
             let mut beside = self.candidates.clone();
@@ -255,6 +238,7 @@ impl Evaluator<'_> {
         let mut hypotheses = self.successive_halving(hypotheses);
         let is_followed = hypotheses.iter().any(Hypothesis::follows_windows);
         if !is_followed && !self.is_led(&hypotheses) {
+            self.restart_bent(&mut hypotheses);
             self.restart_jumping(&mut hypotheses);
             hypotheses.sort_by(Hypothesis::by_error);
         }
@@ -324,8 +308,6 @@ fn beam(sorted: &[Hypothesis]) -> impl Iterator<Item = &Hypothesis> {
 /// The one that leaves least where it counts.
 fn leader(of_size: &[Hypothesis]) -> Option<&Hypothesis> {
     let by_error =
-#[cfg(test)]
-mod bent_tests;
         |a: &&Hypothesis, b: &&Hypothesis| a.deciding_mean().total_cmp(&b.deciding_mean());
     of_size.iter().min_by(by_error)
 }
@@ -341,9 +323,9 @@ fn leaders(sizes: &[Vec<Hypothesis>]) -> impl Iterator<Item = &Hypothesis> {
     });
     leaders.collect::<Vec<_>>().into_iter().rev()
 }
-#[cfg(test)]
-mod whirling_tests;
 
+#[cfg(test)]
+mod bent_tests;
 #[cfg(test)]
 mod drive_lag_tests;
 #[cfg(test)]
@@ -356,3 +338,5 @@ mod stated_tests;
 pub(super) mod tests;
 #[cfg(test)]
 mod value_tests;
+#[cfg(test)]
+mod whirling_tests;
