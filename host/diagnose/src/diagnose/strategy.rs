@@ -11,11 +11,12 @@ pub enum Strategy {
     TakingApart,
     /// The simplest part of the best set that does as well.
     SmallestPart,
-    /// Plainer laws in the place of those that the motions do not determine.
+    /// Plainer laws in the place of those that the motions do not determine, or that rest on a
+    /// bound.
     PlainestLaw,
     /// A look at candidates that their derivatives led astray.
     MisledGlances,
-    /// Fits of laws that jump from every start and the values of the file.
+    /// Fits from the values of the file: of laws that jump, and of all where refitting bent them.
     Restarts,
     /// A horizon chosen by what single effects gain.
     ChosenHorizon,

@@ -24,9 +24,9 @@ impl Evaluator<'_> {
         whole
     }
 
-    /// Puts beside the leader of a size, where a law of it rests on a bound, the sets with a plainer
-    /// one in its place that begin with its values: what is there may be what that law comes to on
-    /// its bound, and no short fit find it from elsewhere.
+    /// Puts beside the leader of a size, where a law of it rests on a bound, the sets with a
+    /// plainer one in its place that begin with its values: what is there may be what that law
+    /// comes to on its bound, and no short fit find it from elsewhere.
     pub(super) fn put_plainer(&self, of_size: &mut Vec<Hypothesis>) {
         let Some(whole) = leader(of_size).filter(|_| self.does(Strategy::PlainestLaw)) else {
             return;
