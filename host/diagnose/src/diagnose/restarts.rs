@@ -34,7 +34,8 @@ impl Evaluator<'_> {
     /// Where a free value is bent, a look at every candidate from the values of the file; those
     /// that leave less than from the refitted ones go on, and take their place.
     pub fn restart_bent(&self, hypotheses: &mut Vec<Hypothesis>) {
-        if !self.does(Strategy::Restarts) || !self.is_bent() {
+        let is_affordable = !self.has_many_candidates();
+        if !is_affordable || !self.does(Strategy::Restarts) || !self.is_bent() {
             return;
         }
         let looks = hypotheses.par_iter().filter_map(|known| {
