@@ -76,7 +76,7 @@ pub(super) struct Evaluator<'a> {
     pub reach: Reach,
     /// Parts of the search that are left out.
     pub skipped: Vec<Strategy>,
-    /// Whether larger sets are tried with every candidate: no other search comes after this one.
+    /// Whether pairs are tried with every candidate: no other search comes after this one.
     pub tries_all: bool,
     pub course: Course<'a>,
     /// What was evaluated since the search last kept what it found, and the best of all.

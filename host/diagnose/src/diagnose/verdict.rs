@@ -59,7 +59,7 @@ pub(super) const UNEXPLAINED_LOW: f64 = 0.2;
 pub(super) const UNEXPLAINED_SHARE: f64 = 0.35;
 /// An explanation that leaves more than this share of the squared error above the noise is not the
 /// whole of it.
-pub(super) const MOST_LEFT: f64 = 0.125;
+const MOST_LEFT: f64 = 0.125;
 /// So does one that leaves more than so many times the noise on motions held out: what is true
 /// leaves hardly more than the noise, and what only resembles it leaves most.
 const MOST_FLOORS: f64 = 2.0;

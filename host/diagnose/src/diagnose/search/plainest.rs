@@ -47,12 +47,7 @@ impl Evaluator<'_> {
         let plainer = self.candidates.iter().filter_map(|candidate| {
             let is_one = candidate.joint == out.joint && self.is_new(&rest, *candidate, &[]);
             let values = values_of(*candidate, out, &values).filter(|_| is_one)?;
-            Some(rest.with(
-                *candidate,
-                &values,
-                &self.search,
-                FitOptions::iterations(LOOK),
-            ))
+            Some(rest.with(*candidate, &values, &self.search, FitOptions::iterations(0)))
         });
         plainer.collect()
     }
