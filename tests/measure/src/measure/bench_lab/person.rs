@@ -91,7 +91,7 @@ impl Person {
         for (page, slider, root) in [
             ("what-if", "[data-path=\"link1.com_m\"]", "#curves"),
             ("compare", "#window", "#curves"),
-            ("gains", "#q", "#response"),
+            ("gains", "#states", "#response"),
         ] {
             let times = self.slides(&served.page(page), slider, root);
             let what = format!("{}: slider of {page}", rig.name);
