@@ -56,6 +56,15 @@ impl AppendFile {
     }
 }
 
+impl Drop for AppendFile {
+    /// Lets others append at once: a child that is being started has the file open, too, and would
+    /// keep them out until it runs its program.
+    fn drop(&mut self) {
+        // Where this is refused the lock ends with the last who has the file open.
+        let _ = fs4::fs_std::FileExt::unlock(&self.file);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::AppendFile;
@@ -68,11 +77,13 @@ mod tests {
         assert_eq!(bytes, b"");
         file.append("one\ntw").unwrap();
         assert!(AppendFile::open(&path).unwrap().is_none());
+        let in_a_child = file.file.try_clone().unwrap();
         drop(file);
         let (mut file, bytes) = AppendFile::open(&path).unwrap().unwrap();
         assert_eq!(bytes, b"one\ntw");
         file.cut(4).unwrap();
         file.append("two\n").unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "one\ntwo\n");
+        drop(in_a_child);
     }
 }
