@@ -139,7 +139,7 @@ impl Comparison {
     }
 
     fn __str__(&self) -> String {
-        text(&self.report.comparisons, &JointNames::default())
+        text(&self.report.comparisons, &self.report.names)
     }
 
     fn __repr__(&self) -> String {

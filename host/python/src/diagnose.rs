@@ -170,13 +170,13 @@ impl Diagnosis {
     /// The answer in sentences.
     #[getter]
     fn summary(&self) -> Vec<String> {
-        self.inner.summary.clone()
+        named(&self.inner.summary, &self.model)
     }
 
     /// What to be wary of.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.inner.warnings.clone()
+        named(&self.inner.warnings, &self.model)
     }
 
     /// Everything, with the keys of `handstand diagnose --json`.
@@ -194,7 +194,7 @@ impl Diagnosis {
     }
 
     fn __str__(&self) -> String {
-        diagnosis_text(&self.inner, &JointNames::default())
+        diagnosis_text(&self.inner, &JointNames::of(&self.model.inner))
     }
 
     fn __repr__(&self) -> String {
@@ -204,26 +204,38 @@ impl Diagnosis {
 }
 
 impl Diagnosis {
-    /// The model as it is and with the effects that were found, against all motions.
     fn report(&self) -> Report {
-        let motions = [self.split.training.as_slice(), &self.split.held_out].concat();
-        let mut models = self.inner.models(&self.model.inner);
-        // Logs that were refused are not simulated.
-        models.retain(|_| !motions.is_empty());
-        let compared = models
-            .iter()
-            .map(|(name, model)| (name.as_str(), model, motions.as_slice()));
-        let horizon = self.inner.horizon_s.map(Horizon::Seconds);
-        Report {
-            title: format!("What {} is missing", self.model.inner.name),
-            comparisons: compare_all(compared, horizon),
-            diagnosis: Some(self.inner.clone()),
-            provenance: ReportProvenance::new(
-                vec![self.model.file()],
-                &self.split,
-                "handstand.diagnose",
-            ),
-            names: JointNames::of(&self.model.inner),
-        }
+        let (diagnosis, split) = (&self.inner, &self.split);
+        let models = diagnosis.models(&self.model.inner);
+        report(models, diagnosis, split, &self.model, "handstand.diagnose")
     }
+}
+
+/// A page: the model as it is and with what was found, against all motions.
+pub fn report(
+    models: Vec<(String, handstand::Model)>,
+    diagnosis: &handstand::diagnose::Diagnosis,
+    split: &Split,
+    file: &Model,
+    made_by: &str,
+) -> Report {
+    let motions = [split.training.as_slice(), &split.held_out].concat();
+    let compared = models
+        .iter()
+        // Logs that were refused are not simulated.
+        .filter(|_| !motions.is_empty())
+        .map(|(name, model)| (name.as_str(), model, motions.as_slice()));
+    Report {
+        title: format!("What {} lacks", file.inner.name),
+        comparisons: compare_all(compared, diagnosis.horizon_s.map(Horizon::Seconds)),
+        diagnosis: Some(diagnosis.clone()),
+        provenance: ReportProvenance::new(vec![file.file()], split, made_by),
+        names: JointNames::of(&file.inner),
+    }
+}
+
+/// Sentences with the names that the model's robot gives its joints and links.
+pub fn named(sentences: &[String], model: &Model) -> Vec<String> {
+    let names = JointNames::of(&model.inner);
+    sentences.iter().map(|line| names.in_text(line)).collect()
 }

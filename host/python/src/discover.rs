@@ -1,10 +1,10 @@
 //! `discover`: the law that the model and the library lack.
 
-use crate::diagnose::seconds;
+use crate::diagnose::{report, seconds};
 use crate::errors::exception;
 use crate::logs::{Learned, horizon, judging, learned_and_held_out};
 use crate::model::Model;
-use crate::value::plain;
+use crate::value::{framed, plain};
 use crate::work;
 use handstand::diagnose::DiagnoseOptions;
 use handstand::diagnose::conventions::ModelFile;
@@ -12,7 +12,7 @@ use handstand::discover::{LogDiscovery, MOST_TERMS, discover_logs};
 use handstand::fitting::{Addition, Horizon, Progress, free_parameters};
 use handstand::model::JointNames;
 use handstand::motion::Split;
-use handstand::report::{discovery_json, discovery_text};
+use handstand::report::{Report, discovery_json, discovery_text, html_with, law_section};
 use pyo3::prelude::*;
 
 /// A law that was discovered, and the model with it.
@@ -20,6 +20,9 @@ use pyo3::prelude::*;
 #[derive(Debug, Clone)]
 pub struct Discovery {
     found: LogDiscovery,
+    /// The model that was given.
+    given: Model,
+    /// The model with the law.
     model: Option<Model>,
 }
 
@@ -124,8 +127,12 @@ fn discovered(
             handstand::discover::discover(&model.inner, split, options, tell)?
         }
     };
-    let model = with_law(&found, &model, options.horizon, tell)?;
-    Ok(Discovery { found, model })
+    let with_law = with_law(&found, &model, options.horizon, tell)?;
+    Ok(Discovery {
+        found,
+        given: model,
+        model: with_law,
+    })
 }
 
 /// The model with the law; none where none was found, or its values cannot be determined.
@@ -177,8 +184,20 @@ impl Discovery {
         plain(py, &discovery_json(&self.found.discovery))
     }
 
+    /// The page of `handstand discover --report`.
+    fn html(&self, py: Python<'_>) -> String {
+        py.detach(|| {
+            let law = law_section(&self.found.discovery, &self.names());
+            html_with(&self.report(), law.into_iter().collect())
+        })
+    }
+
+    fn _repr_html_(&self, py: Python<'_>) -> String {
+        framed(&self.html(py))
+    }
+
     fn __str__(&self) -> String {
-        discovery_text(&self.found.discovery, &JointNames::default())
+        discovery_text(&self.found.discovery, &self.names())
     }
 
     fn __repr__(&self) -> String {
@@ -187,5 +206,22 @@ impl Discovery {
             self.verdict(),
             self.terms().join("; ")
         )
+    }
+}
+
+impl Discovery {
+    fn names(&self) -> JointNames {
+        JointNames::of(&self.given.inner)
+    }
+
+    fn report(&self) -> Report {
+        let LogDiscovery {
+            discovery,
+            model,
+            split,
+        } = &self.found;
+        let models = discovery.diagnosis.models(model);
+        let diagnosis = &discovery.diagnosis;
+        report(models, diagnosis, split, &self.given, "handstand.discover")
     }
 }

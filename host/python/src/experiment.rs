@@ -1,6 +1,6 @@
 //! `next`: which experiment parts what logs leave open, or tightens values?
 
-use crate::diagnose::found;
+use crate::diagnose::{found, named};
 use crate::errors::{exception, usage};
 use crate::logs::{Learned, check, horizon, judging, learned_and_held_out};
 use crate::model::Model;
@@ -163,14 +163,15 @@ pub fn next(
             ..DiagnoseOptions::default()
         };
         let diagnosis = found(model.clone(), learned, &search, &|step| report.tell(step))?.inner;
+        let [summary, next] = [&diagnosis.summary, &diagnosis.next].map(|said| named(said, &model));
         let inner = match diagnosis.verdict {
             Verdict::Unfit => None,
             _ => Some(propose(&model.inner, &diagnosis, all, &options)?),
         };
         Ok(Proposal {
             inner,
-            summary: diagnosis.summary,
-            next: diagnosis.next,
+            summary,
+            next,
         })
     })?;
     proposed.map_err(exception)

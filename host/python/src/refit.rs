@@ -204,7 +204,8 @@ impl Refit {
     }
 
     fn __str__(&self) -> String {
-        refitted_text(&self.refitted, self.before, &JointNames::default())
+        let names = JointNames::of(&self.model.inner);
+        refitted_text(&self.refitted, self.before, &names)
     }
 
     fn __repr__(&self) -> String {

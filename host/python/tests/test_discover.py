@@ -25,6 +25,9 @@ def test_a_cubic_spring_is_discovered(model: hs.Model) -> None:
     assert found.verdict in ("found", "ambiguous")
     assert "q" in found.terms[0] and "torque" in str(found)
     assert found.to_dict()["terms"][0]["joint"] == 1
+    page = found.html()
+    assert 'id="law"' in page and "torque" in page
+    assert "<iframe" in found._repr_html_()
     assert found.model is not None
     before, after = (hs.compare(m, motions[2]).rms[0] for m in (model, found.model))
     assert after < 0.1 * before

@@ -112,7 +112,7 @@ pub fn find(args: &DiagnoseArgs, console: &Console) -> Result<Diagnosis> {
     print((&diagnosis, &model), &compared.named_loops(), console)?;
     let page = || {
         Ok(html(&Report {
-            title: format!("What {} is missing", model.name),
+            title: format!("What {} lacks", model.name),
             comparisons: compared.comparisons(diagnosis.horizon_s, args),
             diagnosis: Some(diagnosis.clone()),
             provenance: page::provenance(&[&args.model], &split, console)?,
