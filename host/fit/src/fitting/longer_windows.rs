@@ -138,6 +138,21 @@ input = { column = "u", unit = "N m" }
     }
 
     #[test]
+    fn a_start_shows_again_where_the_arm_passes_upright() {
+        let truth = Model::parse(ARM, Path::new("arm.toml")).unwrap();
+        let time_s = even(2000, 100.0);
+        let torque_nm = |t: f64| {
+            let slow = 0.16 * (2.2 * t).sin() + 0.1 * (4.1 * t + 1.0).sin();
+            (2.0 * t).min(1.0) * (slow + 0.05 * (9.0 * t + 2.0).sin())
+        };
+        let input = time_s.iter().map(|t| torque_nm(*t)).collect();
+        let motion = driven(&truth, &[0.0], time_s, vec![Some(input)]);
+        let whole = FitProblem::new(&truth, vec![motion], Horizon::Whole);
+        let left = best_fit(&truth, &[], &whole).rms(&whole);
+        assert!(left < 1.05 * whole.floor(), "{left}");
+    }
+
+    #[test]
     fn what_short_windows_tell_too_badly_for_the_whole_goes_there_by_stages() {
         let (truth, motion, free) = swing();
         let short = FitProblem::new(&truth, vec![motion], Horizon::Seconds(0.2));

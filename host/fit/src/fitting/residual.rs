@@ -182,7 +182,7 @@ pub(super) fn motion_residuals_beside(
 ) -> Vec<Vec<f64>> {
     let log = &data.motions[motion];
     let plant = Plant::new(model, log);
-    if !plant.is_told_by_readings() {
+    if !plant.forgets_its_start() {
         return motion_residuals(model, data, window_starts, motion);
     }
     data.halt().begin_run();

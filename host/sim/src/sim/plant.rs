@@ -9,7 +9,7 @@ use crate::dynamics::SpatialEquations;
 use crate::effects::{
     BaseSpring, CONTROLS, Coupling, EFFECTS, Needs, PLACEBO, REMEMBERED_STEP_S, Rig,
 };
-use crate::model::{Angles, MeasuredSignal, Model};
+use crate::model::{Angles, Drive, MeasuredSignal, Model};
 use crate::motion::Motion;
 pub(super) use rate_reading::RateReading;
 
@@ -149,11 +149,17 @@ impl Plant {
         }
     }
 
-    /// Whether two runs whose readings have become the same stay so: each reading is that of an
-    /// angle in its own row, nothing else is remembered, and nothing hidden where they begin.
-    pub fn is_told_by_readings(&self) -> bool {
+    /// Whether two runs whose readings have come as near as noise cannot tell stay so: each joint is
+    /// held to its goal, each reading is that of an angle in its own row, nothing else is
+    /// remembered, and nothing hidden where they begin.
+    ///
+    /// A joint that no drive holds is not: what friction took away of a difference grows again where
+    /// the joint passes upright.
+    pub fn forgets_its_start(&self) -> bool {
+        let holds = |joint: &JointPlan| matches!(joint.drive, Drive::Position { .. });
         let remembers = self.remembers > 0 || self.senses || !self.hidden.is_empty();
-        !remembers && !self.has_offsets && !self.rates.contains(&true)
+        let reads_angles = !self.has_offsets && !self.rates.contains(&true);
+        self.joints.iter().all(holds) && !remembers && reads_angles
     }
 
     /// Compiles `model` for a simulation without a log: no payload, not turned.

@@ -65,7 +65,7 @@ pub fn predict(
 /// The same from a start near that of a run that is known, as far as they differ: once its readings
 /// have come to those of the other, the rest is that one's.
 ///
-/// Of a plant that [is told by its readings](Plant::is_told_by_readings) alone.
+/// Of a plant that [forgets its start](Plant::forgets_its_start).
 pub fn predict_beside(
     plant: &Plant,
     motion: &Motion,

@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn a_run_that_comes_to_a_known_one_goes_on_as_that_does() {
         let arm = plant(SERVO);
-        assert!(arm.0.is_told_by_readings());
+        assert!(arm.0.forgets_its_start());
         let known = read(&arm, 0.2, None);
         let (whole, beside) = (read(&arm, 0.21, None), read(&arm, 0.21, Some(&known)));
         for signal in 0..2 {
@@ -163,6 +163,7 @@ mod tests {
     #[test]
     fn runs_that_cross_or_stay_apart_are_simulated_to_their_end() {
         let arm = plant("drive = \"torque\"\n");
+        assert!(!arm.0.forgets_its_start());
         let known = read(&arm, 0.2, None);
         let (whole, beside) = (read(&arm, 0.21, None), read(&arm, 0.21, Some(&known)));
         assert_eq!(whole, beside);
