@@ -12,7 +12,9 @@ use handstand::discover::{LogDiscovery, MOST_TERMS, discover_logs};
 use handstand::fitting::{Addition, Horizon, Progress, free_parameters};
 use handstand::model::JointNames;
 use handstand::motion::Split;
-use handstand::report::{Report, discovery_json, discovery_text, html_with, law_section};
+use handstand::report::{
+    Report, discovered_terms, discovery_json, discovery_text, html_with, law_section,
+};
 use pyo3::prelude::*;
 
 /// A law that was discovered, and the model with it.
@@ -164,13 +166,11 @@ impl Discovery {
         name.as_str().unwrap_or_default().to_string()
     }
 
-    /// The terms of the law with their values: `torque = -0.0764 * dir * abs(w / 4)^3`.
+    /// The terms of the law with joint and values:
+    /// `joint 1: torque = -0.0764 * dir * abs(w / 4)^3 (drag_power)`.
     #[getter]
     fn terms(&self) -> Vec<String> {
-        let terms = self.found.discovery.terms.iter();
-        terms
-            .map(|term| format!("{} = {}", term.site, term.with_values))
-            .collect()
+        discovered_terms(&self.found.discovery, &self.names())
     }
 
     /// The model with the law; None where there is none to work with.

@@ -22,9 +22,10 @@ use serde_json::json;
 #[derive(Debug, Clone)]
 pub struct Proposal {
     inner: Option<ExperimentProposal>,
-    /// What the diagnosis says, and what it asks for.
+    /// What the diagnosis says.
     summary: Vec<String>,
-    next: Vec<String>,
+    /// What a person does: of the experiment, or without one what the diagnosis asks for.
+    instructions: Vec<String>,
 }
 
 /// The longest motion that is proposed without `seconds`, s; as on the command line.
@@ -149,11 +150,7 @@ pub fn next(
         if let Some(values) = values {
             let horizon = horizon.unwrap_or(Horizon::Whole);
             let proposal = propose_values(&model.inner, &values, all, horizon, &options)?;
-            return Ok(Proposal {
-                inner: Some(proposal),
-                summary: Vec::new(),
-                next: Vec::new(),
-            });
+            return Ok(Proposal::of(Some(proposal), [&[], &[]], &model));
         }
         let search = DiagnoseOptions {
             without,
@@ -163,16 +160,12 @@ pub fn next(
             ..DiagnoseOptions::default()
         };
         let diagnosis = found(model.clone(), learned, &search, &|step| report.tell(step))?.inner;
-        let [summary, next] = [&diagnosis.summary, &diagnosis.next].map(|said| named(said, &model));
         let inner = match diagnosis.verdict {
             Verdict::Unfit => None,
             _ => Some(propose(&model.inner, &diagnosis, all, &options)?),
         };
-        Ok(Proposal {
-            inner,
-            summary,
-            next,
-        })
+        let said = [diagnosis.summary.as_slice(), &diagnosis.next];
+        Ok(Proposal::of(inner, said, &model))
     })?;
     proposed.map_err(exception)
 }
@@ -216,6 +209,23 @@ fn ranges(given: &Bound<'_, PyAny>, joints: usize) -> PyResult<(Vec<f64>, Vec<f6
     }
 }
 
+impl Proposal {
+    /// A proposal after what a diagnosis says and asks for, with the names of the model's joints.
+    fn of(
+        inner: Option<ExperimentProposal>,
+        [summary, next]: [&[String]; 2],
+        model: &Model,
+    ) -> Proposal {
+        let experiment = inner.as_ref().and_then(|own| own.experiment.as_ref());
+        let instructions = experiment.map_or(next, |own| &own.instructions);
+        Proposal {
+            summary: named(summary, model),
+            instructions: named(instructions, model),
+            inner,
+        }
+    }
+}
+
 #[pymethods]
 impl Proposal {
     /// Whether an experiment within the limits helps.
@@ -227,8 +237,7 @@ impl Proposal {
     /// What a person does, in sentences; without an experiment what the diagnosis asks for.
     #[getter]
     fn instructions(&self) -> Vec<String> {
-        let experiment = self.inner.as_ref().and_then(|own| own.experiment.as_ref());
-        experiment.map_or_else(|| self.next.clone(), |own| own.instructions.clone())
+        self.instructions.clone()
     }
 
     /// The motion to play: times, inputs, and what the first explanation predicts; `None` without
@@ -256,7 +265,7 @@ impl Proposal {
     fn __str__(&self) -> String {
         let lines = self.summary.iter().cloned();
         lines
-            .chain(self.instructions())
+            .chain(self.instructions.iter().cloned())
             .collect::<Vec<_>>()
             .join("\n")
     }

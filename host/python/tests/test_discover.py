@@ -23,7 +23,8 @@ def test_a_cubic_spring_is_discovered(model: hs.Model) -> None:
     motions = [measured(truth, seed) for seed in (1, 2, 3)]
     found = hs.discover(model, motions[:2], holdout=motions[2], terms=1)
     assert found.verdict in ("found", "ambiguous")
-    assert "q" in found.terms[0] and "torque" in str(found)
+    assert found.terms[0].startswith("joint 1: torque = ") and "q" in found.terms[0]
+    assert found.terms[0] in str(found)
     assert found.to_dict()["terms"][0]["joint"] == 1
     page = found.html()
     assert 'id="law"' in page and "torque" in page

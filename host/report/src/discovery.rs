@@ -22,8 +22,7 @@ pub fn discovery_text(discovery: &Discovery, names: &JointNames) -> String {
     if discovery.verdict == DiscoveryVerdict::Unfit {
         headline.extend(diagnosis.summary.iter().cloned());
     }
-    let law = discovery.terms.iter();
-    let law: Vec<String> = law.map(|term| line(term, names)).collect();
+    let law = discovered_terms(discovery, names);
     let wrong = diagnosis.wrong_values.iter();
     let wrong = wrong.map(|wrong| format!("{}: {}", wrong.fitted.path, change(wrong)));
     let sections = [
@@ -131,6 +130,12 @@ pub fn verdict_sentence(discovery: &Discovery) -> &'static str {
         }
         DiscoveryVerdict::Unfit => "unfit.",
     }
+}
+
+/// The terms of the law with their values, each of its joint.
+pub fn discovered_terms(discovery: &Discovery, names: &JointNames) -> Vec<String> {
+    let terms = discovery.terms.iter();
+    terms.map(|term| line(term, names)).collect()
 }
 
 /// "joint 1: torque = -0.0112 * dir * abs(w / 5)^2.98 (drag_power)"

@@ -36,7 +36,7 @@ mod waterfall;
 mod words;
 
 pub use diagnosis_file::DiagnosisFile;
-pub use discovery::{discovery_text, law_section, term_chart, verdict_sentence};
+pub use discovery::{discovered_terms, discovery_text, law_section, term_chart, verdict_sentence};
 pub use file_names::{file_name, file_names};
 pub use gains_page::{GainsReport, gains_page};
 pub use json::{diagnosis_json, discovery_json, gains_json, json};

@@ -137,10 +137,11 @@ pub fn run(args: &NextArgs, console: &Console) -> Result<ExitStatus> {
     };
     let helps = proposal.as_ref().is_some_and(ExperimentProposal::helps);
     let experiment = proposal.as_ref().and_then(|p| p.experiment.as_ref());
+    let names = JointNames::of(&model);
     let mut written: Option<&Path> = None;
     if let (Some(file), Some(experiment)) = (&args.output, experiment) {
         let columns = inputs_alone(&model);
-        let comments = [experiment.instructions.join("\n")];
+        let comments = [names.in_text(&experiment.instructions.join("\n"))];
         let text = to_csv(&experiment.motion, &columns, &comments);
         output::write_new(file, &text, args.force)?;
         written = Some(file);
@@ -154,7 +155,6 @@ pub fn run(args: &NextArgs, console: &Console) -> Result<ExitStatus> {
         "next": next_steps(diagnosis, proposal, &follow_up),
         "replayable": follow_up.replayable,
     });
-    let names = JointNames::of(&model);
     console.result(&data, || {
         names.in_text(&proposal_text(diagnosis, proposal, &follow_up))
     })?;
