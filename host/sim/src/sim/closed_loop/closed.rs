@@ -1,5 +1,6 @@
 //! A loop and its runs.
 
+use super::equations::Equations;
 use super::lanes;
 use super::run::{Run, Sample};
 use super::{Clock, Commands, Controller, Outcome, PosedPlant, Sensor, StabilityCriteria, stream};
@@ -9,7 +10,7 @@ use rand::Rng as _;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// Runs handed to a thread at a time.
+/// Runs handed to a thread at a time, where they go in lanes.
 const BLOCK: usize = 32;
 
 /// A plant with sensors and clock, waiting for a controller.
@@ -144,11 +145,16 @@ impl ClosedLoop {
             seconds,
             rng: stream(seed, index as u64),
         };
+        let at_once = match self.plant.equations {
+            // Runs that share no lanes share nothing: threads take them one by one.
+            Equations::General => 1,
+            _ => BLOCK,
+        };
         starts
-            .par_chunks(BLOCK)
+            .par_chunks(at_once)
             .enumerate()
             .flat_map_iter(|(block, starts)| {
-                let first = block * BLOCK;
+                let first = block * at_once;
                 run_jobs(
                     starts
                         .iter()
