@@ -2,6 +2,7 @@
 //! data made with it.
 
 use super::case::TS_S;
+use super::humanoid::{LumpedBlock, lumped_blocks};
 use super::printed::PrintedQuantity;
 use crate::error::Result;
 use crate::model::Model;
@@ -43,6 +44,8 @@ pub struct Computed {
     pub servo: Vec<(String, IntervalEstimate)>,
     /// What follows from the servo's model without being printed.
     pub servo_facts: ServoFacts,
+    /// The whole robot with its 18 servos, beside Table 1.
+    pub blocks: Vec<LumpedBlock>,
 }
 
 /// The transmission zeros from the torques to two of the angles: a pair on an axis.
@@ -84,6 +87,7 @@ impl Computed {
             zeros: zeros(&plant)?,
             servo: servo(),
             servo_facts: servo_facts(),
+            blocks: lumped_blocks(&model)?,
             sampled,
             plant,
             model,

@@ -2,13 +2,15 @@
 //!
 //! `printed` holds what it prints, `computed` what follows from its Table 1, `checked` sets them
 //! side by side; `case` is a run of the robot, `robot` and `servo` draw what its figures show;
-//! `findings` says of each result whether it holds.
+//! `findings` says of each result whether it holds; `humanoid` is the whole robot that Table 1's
+//! three links are when it is held still.
 
 mod case;
 mod checked;
 mod computed;
 mod figure;
 mod findings;
+mod humanoid;
 mod identification;
 mod page;
 mod printed;
@@ -23,7 +25,8 @@ pub use checked::{Agreement, CheckedNumber, check};
 pub use computed::{Computed, ServoFacts, Zeros};
 pub use figure::{Holds, PaperFigure};
 pub use findings::{Finding, findings};
-pub use page::{follows, html, number_columns};
+pub use humanoid::{BlockValue, LumpedBlock, LumpedValues, humanoid_urdf, lumped_blocks};
+pub use page::{block_columns, follows, html, number_columns, rest_of_blocks};
 pub use printed::{Printed, PrintedQuantity, printed};
 
 use handstand_control::{synth, sysid};

@@ -1,6 +1,7 @@
 //! The page: numbers, figures, findings.
 
 use super::findings::Finding;
+use super::humanoid::{BlockValue, LumpedBlock};
 use super::{Agreement, CheckedNumber, Computed, Holds, PaperFigure, Reproduction};
 use crate::plot::Chart;
 use crate::report::page::{Section, document};
@@ -15,6 +16,7 @@ const SIZE: (f64, f64) = (460.0, 250.0);
 pub fn html(study: &Reproduction, command: &str) -> String {
     let sections = [
         numbers(study),
+        whole(study),
         figures(study),
         findings(study),
         origin(command),
@@ -76,6 +78,52 @@ pub fn number_columns<'a>() -> Columns<'a, CheckedNumber> {
         .number("Computed", CheckedNumber::computed_text)
         .text("Verdict", |row| row.verdict.to_string())
         .judged(|row| row.verdict == Agreement::Agrees)
+}
+
+fn whole(study: &Reproduction) -> Section {
+    let blocks = &study.computed.blocks;
+    let values: Vec<BlockValue> = blocks.iter().flat_map(LumpedBlock::values).collect();
+    Section {
+        id: "whole",
+        title: "The whole robot, held still",
+        lead: "The robot with its 18 servos in three dimensions, as a URDF file that is read like \
+               any other. Its servos are where its parts put them and weigh what Robotis says. \
+               What is no servo nobody weighed: it is put where Table 1 leaves it, and beside that \
+               spread evenly along each block.",
+        body: markup! {
+            (page_table(&values, &block_columns()))
+            ul { @for line in rest_of_blocks(blocks) { li { (line) } } }
+        },
+    }
+}
+
+/// The columns of a block's values: Table 1, the whole robot, and the rest spread evenly.
+pub fn block_columns<'a>() -> Columns<'a, BlockValue> {
+    let digits = |value: f64| format!("{value:.2}");
+    columns_of::<BlockValue>()
+        .text("Block", |own| own.block.to_string())
+        .text("Quantity", |own| format!("{}, {}", own.name, own.unit))
+        .number("Table 1", |own| format!("{:.1}", own.values[0]))
+        .number("Whole robot", move |own| digits(own.values[1]))
+        .number("Rest spread evenly", move |own| digits(own.values[2]))
+}
+
+/// Where Table 1 leaves what of each block is no servo: a sentence each.
+pub fn rest_of_blocks(blocks: &[LumpedBlock]) -> Vec<String> {
+    let sentence = |block: &LumpedBlock| {
+        let mm = |metres: f64| format!("{:.0}", 1e3 * metres);
+        let (LumpedBlock { name, servos, .. }, rest_g) = (block, 1e3 * block.rest_kg);
+        let ([low, high], [from, to]) = (block.rest_at_m, block.reach_m);
+        format!(
+            "{name}: {servos} servos; {rest_g:.1} g half at {} mm, half at {} mm (it reaches from {} \
+             to {} mm)",
+            mm(low),
+            mm(high),
+            mm(from),
+            mm(to)
+        )
+    };
+    blocks.iter().map(sentence).collect()
 }
 
 /// What follows from the numbers without being printed: what it is, and its value.

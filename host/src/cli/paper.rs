@@ -17,8 +17,8 @@ use super::page::PageFile;
 use super::{Console, ExitStatus, show};
 use handstand::Result;
 use handstand::paper::{
-    Agreement, CheckedNumber, Computed, Reproduction, STEPS, check, follows, html, number_columns,
-    reproduce,
+    Agreement, BlockValue, CheckedNumber, Computed, LumpedBlock, Reproduction, STEPS,
+    block_columns, check, follows, html, number_columns, reproduce, rest_of_blocks,
 };
 use serde_json::{Value, json};
 
@@ -48,7 +48,7 @@ pub fn run(args: &PaperArgs, console: &Console) -> Result<ExitStatus> {
         }
     };
     console.result(&data(&rows, &computed, whole.as_ref()), || {
-        let mut parts = vec![numbers(&rows), following(&computed)];
+        let mut parts = vec![numbers(&rows), whole_robot(&computed), following(&computed)];
         parts.extend(whole.as_ref().filter(|_| args.findings).map(judged));
         parts.join("\n\n")
     })?;
@@ -78,6 +78,18 @@ fn numbers(rows: &[CheckedNumber]) -> String {
         rows.len(),
         count(|verdict| *verdict == Agreement::Agrees),
         count(|verdict| matches!(verdict, Agreement::Sign | Agreement::Digits(..)))
+    )
+}
+
+fn whole_robot(computed: &Computed) -> String {
+    let blocks = &computed.blocks;
+    let values: Vec<BlockValue> = blocks.iter().flat_map(LumpedBlock::values).collect();
+    let rest = rest_of_blocks(blocks).join("\n  ");
+    format!(
+        "{}\nThe whole robot with its 18 servos (host/models/humanoid.urdf), held in the \
+         handstand. What\nnobody weighed in public is put where Table 1 leaves it; heights are \
+         over the block's lower axis:\n  {rest}",
+        show::table_of(&values, &block_columns())
     )
 }
 
@@ -116,6 +128,7 @@ fn data(rows: &[CheckedNumber], computed: &Computed, whole: Option<&Reproduction
     };
     json!({
         "rows": rows.iter().map(row).collect::<Vec<Value>>(),
+        "blocks": computed.blocks,
         "follows": {
             "zeros": computed.zeros,
             "servo_gain": facts.gain,

@@ -69,18 +69,32 @@ impl Robot {
                 locked.push((name.to_string(), table.required_number(name, HELD)?));
             }
         }
-        let found = robot_in_space(&text, &path, &locked).map_err(|error| match error {
+        let found = Robot::parse(&text, &path, &locked).map_err(|error| match error {
             Error::Usage(problem) => problem.at(rig.place_of("robot")),
             error => error,
         })?;
         Ok(Some(Robot {
             file: file.to_string(),
-            locked,
+            ..found
+        }))
+    }
+
+    /// A robot from the text of a URDF or MJCF file, which `path` only names; `locked` holds joints
+    /// where it says.
+    ///
+    /// # Errors
+    /// A text that is no robot, a joint to hold that is not there, and links that would move without
+    /// mass.
+    pub fn parse(text: &str, path: &Path, locked: &[Locked]) -> Result<Robot> {
+        let found = robot_in_space(text, path, locked)?;
+        Ok(Robot {
+            file: path.display().to_string(),
+            locked: locked.to_vec(),
             tree: found.tree,
             joints: found.joints,
             links: found.links,
             ranges: found.ranges,
-        }))
+        })
     }
 
     /// A link's values in the robot's file, as a model has them.

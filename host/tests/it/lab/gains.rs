@@ -10,6 +10,7 @@ fn models() -> Vec<String> {
     let files = std::fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = files
         .map(|file| file.unwrap().path().display().to_string())
+        .filter(|name| name.ends_with(".toml"))
         .collect();
     names.sort();
     names
