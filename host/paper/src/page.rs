@@ -88,8 +88,8 @@ fn whole(study: &Reproduction) -> Section {
         title: "The whole robot, held still",
         lead: "The robot with its 18 servos in three dimensions, as a URDF file that is read like \
                any other. Its servos are where its parts put them and weigh what Robotis says. \
-               What is no servo nobody weighed: it is put where Table 1 leaves it, and beside that \
-               spread evenly along each block.",
+               The rest, whose weight is not public, is put where Table 1 leaves it, and beside \
+               that spread evenly along each block.",
         body: markup! {
             (page_table(&values, &block_columns()))
             ul { @for line in rest_of_blocks(blocks) { li { (line) } } }
@@ -108,15 +108,15 @@ pub fn block_columns<'a>() -> Columns<'a, BlockValue> {
         .number("Rest spread evenly", move |own| digits(own.values[2]))
 }
 
-/// Where Table 1 leaves what of each block is no servo: a sentence each.
+/// Where Table 1 leaves the rest of each block: a sentence each.
 pub fn rest_of_blocks(blocks: &[LumpedBlock]) -> Vec<String> {
     let sentence = |block: &LumpedBlock| {
         let mm = |metres: f64| format!("{:.0}", 1e3 * metres);
         let (LumpedBlock { name, servos, .. }, rest_g) = (block, 1e3 * block.rest_kg);
         let ([low, high], [from, to]) = (block.rest_at_m, block.reach_m);
         format!(
-            "{name}: {servos} servos; {rest_g:.1} g half at {} mm, half at {} mm (it reaches from {} \
-             to {} mm)",
+            "{name}: {servos} servos; a rest of {rest_g:.1} g, half at {} mm, half at {} mm (the \
+             block: {} to {} mm)",
             mm(low),
             mm(high),
             mm(from),

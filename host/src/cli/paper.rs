@@ -87,8 +87,8 @@ fn whole_robot(computed: &Computed) -> String {
     let rest = rest_of_blocks(blocks).join("\n  ");
     format!(
         "{}\nThe whole robot with its 18 servos (host/models/humanoid.urdf), held in the \
-         handstand. What\nnobody weighed in public is put where Table 1 leaves it; heights are \
-         over the block's lower axis:\n  {rest}",
+         handstand. The\nrest, whose weight is not public, is put where Table 1 leaves it; heights \
+         are over the block's lower\naxis:\n  {rest}",
         show::table_of(&values, &block_columns())
     )
 }

@@ -83,8 +83,8 @@ impl Robot {
     /// where it says.
     ///
     /// # Errors
-    /// A text that is no robot, a joint to hold that is not there, and links that would move without
-    /// mass.
+    /// A text that is no robot, a joint to hold that is not there, and links that would move
+    /// without mass.
     pub fn parse(text: &str, path: &Path, locked: &[Locked]) -> Result<Robot> {
         let found = robot_in_space(text, path, locked)?;
         Ok(Robot {

@@ -1,6 +1,6 @@
 //! A block of Table 1: what of it is servos, and what is left for frames, controller and batteries.
 
-use super::places::{BLOCKS, BlockPlace, PARTS, SHOULDER_M, SidePart};
+use super::places::{BLOCKS, BlockPlace, SHOULDER_M, SidePart};
 use crate::model::Link;
 
 /// Mass, centre and moment of inertia of parts together, for turns about the axis from hand to
@@ -79,8 +79,7 @@ impl Block {
     pub fn all(table: &[Link]) -> Vec<Block> {
         let mut from_m = 0.0;
         let block = |(place, link): (BlockPlace, &Link)| {
-            let known = PARTS.iter().filter(|part| place.links.contains(&part.link));
-            let known = Lump::of(&known.map(both).collect::<Vec<_>>());
+            let known = Lump::of(&place.parts().map(both).collect::<Vec<_>>());
             let whole = Lump {
                 mass_kg: link.mass_kg,
                 com_m: [0.0, from_m + link.com_m],
@@ -100,9 +99,7 @@ impl Block {
 
     /// Its servos.
     pub fn servos(&self) -> usize {
-        let own = PARTS
-            .iter()
-            .filter(|part| self.place.links.contains(&part.link));
+        let own = self.place.parts();
         2 * own.filter(|part| part.servo.is_some()).count()
     }
 

@@ -1,7 +1,7 @@
 //! The whole humanoid, with its 18 servos: held still, it is the three links of Table 1.
 //!
 //! `places` has where servos and joints are, and what they weigh; `block` what Table 1 leaves for
-//! frames, controller and batteries, which nobody weighed in public; `urdf` writes the robot. What
+//! frames, controller and batteries, whose weights are not public; `urdf` writes the robot. What
 //! is compared with Table 1 is read back from that file, as any robot's is.
 
 mod block;
@@ -27,8 +27,8 @@ pub struct LumpedBlock {
     pub stated: LumpedValues,
     /// The whole robot's, held in the handstand.
     pub lumped: LumpedValues,
-    /// The same if what is no servo were spread evenly along the block, which uses nothing of Table
-    /// 1 but masses and lengths.
+    /// The same if the rest were spread evenly along the block, which uses nothing of Table 1 but
+    /// masses and lengths.
     pub evenly: LumpedValues,
     /// Mass of what is neither a servo nor a frame of known mass, kg: what Table 1 leaves.
     pub rest_kg: f64,

@@ -164,8 +164,8 @@ pub(super) struct BlockPlace {
     pub links: &'static [&'static str],
     /// From where to where it reaches over the shoulders' axis, m.
     pub reach_m: [f64; 2],
-    /// The links that carry the lower and the upper part of what is no servo, and how far aside, m;
-    /// in the middle they are not halved.
+    /// The links that carry the lower and the upper half of the rest, and how far aside, m; in the
+    /// middle they are not halved.
     pub carried_by: [(&'static str, f64); 2],
     /// Edge of these two parts, m.
     pub edge_m: f64,
@@ -195,3 +195,11 @@ pub(super) const BLOCKS: [BlockPlace; 3] = [
         edge_m: 0.03,
     },
 ];
+
+impl BlockPlace {
+    /// What is known of its left half.
+    pub fn parts(&self) -> impl Iterator<Item = &'static SidePart> + use<> {
+        let links = self.links;
+        PARTS.iter().filter(move |part| links.contains(&part.link))
+    }
+}

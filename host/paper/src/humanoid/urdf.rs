@@ -11,7 +11,7 @@ const LIMITS: &str = r#"<limit lower="-2.618" upper="2.618" effort="1.5" velocit
 const HEAD: &str = r#"<?xml version="1.0"?>
 <!-- The Bioloid humanoid with its 18 servos, hands on the bar, stretched upwards. `handstand paper`
      says how it becomes the three links of the paper's Table 1, and what of it is estimated: the
-     parts named _low and _high are all that is no servo, where Table 1 leaves them. -->
+     parts named _low and _high are all whose weight is not public, where Table 1 leaves them. -->
 <robot name="humanoid">
 "#;
 
@@ -159,7 +159,7 @@ fn bodies(blocks: &[Block]) -> Vec<Body> {
     all
 }
 
-/// What of a block is no servo: two parts, halved between the sides.
+/// The rest of a block: two parts, halved between the sides.
 fn rest(block: &Block) -> Vec<Body> {
     let forward = block.rest.com_m[0];
     let mut all = Vec::new();

@@ -149,12 +149,12 @@ impl Plant {
         }
     }
 
-    /// Whether two runs whose readings have come as near as noise cannot tell stay so: each joint is
-    /// held to its goal, each reading is that of an angle in its own row, nothing else is
-    /// remembered, and nothing hidden where they begin.
+    /// Whether two runs whose readings have come as near as noise cannot tell stay so: a drive
+    /// holds each joint to its goal, each reading is that of an angle in its own row, nothing else
+    /// is remembered, and nothing hidden where they begin.
     ///
-    /// A joint that no drive holds is not: what friction took away of a difference grows again where
-    /// the joint passes upright.
+    /// Where no drive holds a joint, what friction took away of a difference grows again as the
+    /// joint passes upright.
     pub fn forgets_its_start(&self) -> bool {
         let holds = |joint: &JointPlan| matches!(joint.drive, Drive::Position { .. });
         let remembers = self.remembers > 0 || self.senses || !self.hidden.is_empty();
