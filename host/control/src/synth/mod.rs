@@ -8,6 +8,7 @@
 mod controllability;
 pub mod controllers;
 mod cost_weights;
+mod descent;
 mod design;
 mod discretise;
 mod eigen;

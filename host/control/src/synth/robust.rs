@@ -4,25 +4,19 @@
 //! unit size, by gradient. With S_i the sum of x x' over those runs,
 //! dJ/dK = 2 sum_i [(R + B'P_i B) K - B'P_i A] S_i (Levine, Athans, IEEE Trans. Automatic Control
 //! 15 (1970) 44, told for sampled plants and several of them: Makila, Toivonen, IEEE Trans.
-//! Automatic Control 32 (1987) 658). The step is quasi-Newton (BFGS). A gain that one plant escapes
-//! has infinite cost, so the search never leaves the gains that hold all of them; it has to start
-//! from one, which [`multi_model_continuation`] finds by widening the spread of the plants in
-//! stages.
+//! Automatic Control 32 (1987) 658). A gain that one plant escapes has no cost, so the search never
+//! leaves the gains that hold all of them; it has to start from one, which
+//! [`multi_model_continuation`] finds by widening the spread of the plants in stages.
 
+use super::descent;
 use super::error::DesignError;
 use super::gains::dlqr;
 use super::riccati::stein;
 use super::system::Discrete;
 use nalgebra::{DMatrix, DVector};
 
-/// Most quasi-Newton steps.
-const MOST_STEPS: usize = 200;
-
 /// Of the sums over all of a run.
 const ACCURACY: f64 = 1e-14;
-
-/// The search ends once a step lowers the logarithm of the cost by less than this.
-const STILL: f64 = 1e-9;
 
 /// Largest modulus of the eigenvalues of a square matrix: below 1, A^k dies out.
 ///
@@ -61,40 +55,19 @@ pub fn multi_model(
     r: &DMatrix<f64>,
     start: &DMatrix<f64>,
 ) -> Result<DMatrix<f64>, DesignError> {
-    let (m, n) = start.shape();
-    let mut k = start.clone();
-    let (mut cost, gradient) = mean_cost(plants, q, r, &k).ok_or_else(|| {
+    let gain = |flat: &DVector<f64>| {
+        DMatrix::from_column_slice(start.nrows(), start.ncols(), flat.as_slice())
+    };
+    let flat = |matrix: &DMatrix<f64>| DVector::from_column_slice(matrix.as_slice());
+    let found = descent::least(flat(start), |k| {
+        mean_cost(plants, q, r, &gain(k)).map(|(cost, gradient)| (cost, flat(&gradient)))
+    });
+    found.map(|k| gain(&k)).ok_or_else(|| {
         DesignError::model(
             "the gain to start from lets one of the plants fall",
             "start from plants that differ less",
         )
-    })?;
-    let flat = |matrix: &DMatrix<f64>| DVector::from_column_slice(matrix.as_slice());
-    let mut slope = flat(&gradient);
-    let mut curvature =
-        DMatrix::<f64>::identity(m * n, m * n) / slope.norm().max(f64::MIN_POSITIVE);
-    for _ in 0..MOST_STEPS {
-        let mut way = -(&curvature * &slope);
-        if way.dot(&slope) >= 0.0 {
-            way = -&slope;
-            curvature.fill_with_identity();
-        }
-        let Some((reach, next_cost, next_gradient)) =
-            search(plants, q, r, &k, &way, cost, slope.dot(&way))
-        else {
-            break;
-        };
-        let moved = &way * reach;
-        k += DMatrix::from_column_slice(m, n, moved.as_slice());
-        let next_slope = flat(&next_gradient);
-        bfgs(&mut curvature, &moved, &(&next_slope - &slope));
-        let gained = cost - next_cost;
-        (cost, slope) = (next_cost, next_slope);
-        if gained < STILL {
-            break;
-        }
-    }
-    Ok(k)
+    })
 }
 
 /// The multi-model gain for the plants that `spread(share)` gives, `share` growing to 1 in `stages`
@@ -145,42 +118,6 @@ fn mean_cost(
         gradient += 2.0 * ((r + &bp * b) * k - bp * a) * s;
     }
     (cost > 0.0 && cost.is_finite()).then(|| ((cost / plants.len() as f64).ln(), gradient / cost))
-}
-
-/// A step along `way` that lowers the cost enough (Armijo), with the cost and gradient there.
-fn search(
-    plants: &[Discrete],
-    q: &DMatrix<f64>,
-    r: &DMatrix<f64>,
-    k: &DMatrix<f64>,
-    way: &DVector<f64>,
-    cost: f64,
-    slope: f64,
-) -> Option<(f64, f64, DMatrix<f64>)> {
-    let way = DMatrix::from_column_slice(k.nrows(), k.ncols(), way.as_slice());
-    let mut reach = 1.0;
-    for _ in 0..40 {
-        if let Some((next, gradient)) = mean_cost(plants, q, r, &(k + reach * &way))
-            && next <= cost + 1e-4 * reach * slope
-        {
-            return Some((reach, next, gradient));
-        }
-        reach /= 2.0;
-    }
-    None
-}
-
-/// The update of the inverse curvature from a step and the change of slope along it (Nocedal,
-/// Wright, Numerical Optimization, 2nd ed., equation 6.17); skipped where the cost does not curve
-/// upwards.
-fn bfgs(inverse: &mut DMatrix<f64>, moved: &DVector<f64>, turned: &DVector<f64>) {
-    let along = moved.dot(turned);
-    if along <= 1e-12 * moved.norm() * turned.norm() {
-        return;
-    }
-    let unit = DMatrix::<f64>::identity(moved.len(), moved.len());
-    let left = &unit - moved * turned.transpose() / along;
-    *inverse = &left * &*inverse * left.transpose() + moved * moved.transpose() / along;
 }
 
 #[cfg(test)]
