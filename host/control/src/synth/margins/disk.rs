@@ -1,16 +1,12 @@
 //! The structured singular value for channels that change each in its own way, and the disk margin.
 
 use super::response::{Matrix, largest_singular_value};
-use nalgebra::Complex;
+use crate::synth::descent::{self, Slope};
+use nalgebra::{Complex, DVector};
 
-/// Powers of the squared singular values whose sums lead to the largest one alone.
-const POWERS: [f64; 3] = [8.0, 64.0, 512.0];
-
-/// Turns of the search over all channels for each power.
-const TURNS: usize = 2;
-
-/// Halvings of a channel's interval in the search.
-const HALVINGS: usize = 14;
+/// Squarings that make powers of the squared singular values, whose sums lead to the largest one
+/// alone.
+const SQUARINGS: [i32; 3] = [3, 6, 9];
 
 /// Turns of the balancing.
 const BALANCING_TURNS: usize = 10;
@@ -60,7 +56,7 @@ pub(super) fn structured_singular_value(m: &Matrix) -> f64 {
     match m.nrows() {
         1 => m[0].norm(),
         2 => of_two(m),
-        _ => of_more(balanced(m.clone())),
+        _ => of_more(&balanced(m.clone())),
     }
 }
 
@@ -83,73 +79,135 @@ fn balanced(mut m: Matrix) -> Matrix {
             let column = m.column(channel).norm_squared() - own;
             // A channel that no other meets, or that meets none, needs no balance.
             if row > 0.0 && column > 0.0 {
-                m = scaled(&m, channel, (column / row).ln() / 4.0);
+                let factor = Complex::from((column / row).powf(0.25));
+                m.row_mut(channel).iter_mut().for_each(|z| *z *= factor);
+                m.column_mut(channel).iter_mut().for_each(|z| *z /= factor);
             }
         }
     }
     m
 }
 
-/// Sums of powers of the singular values are smooth and convex in the logarithms of D: lowered one
-/// channel after the other, for ever higher powers.
-fn of_more(mut m: Matrix) -> f64 {
-    let mut least = largest_singular_value(&m);
-    for power in POWERS {
-        for _ in 0..TURNS {
-            for channel in 1..m.nrows() {
-                let log = lowest(2.0 / power.sqrt(), &|log| {
-                    slope(scaled(&m, channel, log), channel, power)
-                });
-                m = scaled(&m, channel, log);
-            }
-        }
-        least = least.min(largest_singular_value(&m));
+/// Sums of powers of the singular values are smooth and convex in the logarithms of D: lowered for
+/// ever higher powers.
+fn of_more(m: &Matrix) -> f64 {
+    let mut least = largest_singular_value(m);
+    let mut logs = DVector::zeros(m.nrows());
+    for squarings in SQUARINGS {
+        let sum = |logs: &DVector<f64>| sum_of_powers(&scaled(m, logs), squarings);
+        let Some(lower) = descent::least(logs.clone(), sum) else {
+            break;
+        };
+        logs = lower;
+        least = least.min(largest_singular_value(&scaled(m, &logs)));
     }
     least
 }
 
-/// Row `channel` times e^`log`, its column divided by as much.
-fn scaled(m: &Matrix, channel: usize, log: f64) -> Matrix {
-    let factor = Complex::from(log.exp());
-    let mut m = m.clone();
-    m.row_mut(channel).iter_mut().for_each(|z| *z *= factor);
-    m.column_mut(channel).iter_mut().for_each(|z| *z /= factor);
-    m
+/// Each row times e to its logarithm, each column divided by as much.
+fn scaled(m: &Matrix, logs: &DVector<f64>) -> Matrix {
+    Matrix::from_fn(m.nrows(), m.ncols(), |i, j| {
+        m[(i, j)] * (logs[i] - logs[j]).exp()
+    })
 }
 
-/// How the sum of powers rises with the logarithm of a channel's factor, in parts of itself: a
-/// singular value rises by |u|^2 - |v|^2 of that channel.
-fn slope(m: Matrix, channel: usize, power: f64) -> f64 {
-    let svd = m.svd(true, true);
-    let (Some(u), Some(v)) = (&svd.u, &svd.v_t) else {
-        return 0.0;
-    };
-    let values = &svd.singular_values;
-    let largest = values.max().max(f64::MIN_POSITIVE);
-    let rise = |k: usize| {
-        let share = (values[k] / largest).powf(2.0 * power);
-        share * (u[(channel, k)].norm_sqr() - v[(k, channel)].norm_sqr())
-    };
-    (0..values.len()).map(rise).sum()
-}
-
-/// Where a rising slope meets 0, from 0 in steps of about `step`.
-fn lowest(step: f64, slope: &dyn Fn(f64) -> f64) -> f64 {
-    let down = slope(0.0) > 0.0;
-    let mut reach = if down { -step } else { step };
-    let mut near = 0.0;
-    // Outwards until the slope turns.
-    while (slope(reach) > 0.0) == down && reach.abs() < 40.0 {
-        near = reach;
-        reach *= 2.0;
+/// The sum of the singular values to the power of 2 (2^`squarings` + 1), to the root of that, and
+/// how it rises with the logarithms of the channels' factors, all as logarithms: a singular value
+/// rises by |u|^2 - |v|^2 of a channel. By powers of M* M, which no iteration has to find.
+fn sum_of_powers(m: &Matrix, squarings: i32) -> Option<Slope> {
+    let square = m.adjoint() * m;
+    // M* M to the power 2^k is e^scale times this.
+    let (mut power, mut scale) = (square.clone(), 0.0);
+    for _ in 0..squarings {
+        let size = power.norm();
+        scale = 2.0 * (scale + size.ln());
+        power.apply(|value| *value /= size);
+        power = &power * &power;
     }
-    for _ in 0..HALVINGS {
-        let middle = f64::midpoint(near, reach);
-        if (slope(middle) > 0.0) == down {
-            near = middle;
-        } else {
-            reach = middle;
+    let inner = (&power * &square).diagonal();
+    let outer = (m * &power).component_mul(&m.conjugate()).column_sum();
+    let sum = inner.sum().re;
+    let value = (scale + sum.ln()) / (2.0 * (2f64.powi(squarings) + 1.0));
+    value
+        .is_finite()
+        .then(|| (value, (outer - inner).map(|rise| rise.re / sum)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synth::eigen::largest;
+    use rand::{Rng as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Entries of very different size.
+    fn uneven(channels: usize, random: &mut ChaCha8Rng) -> Matrix {
+        let mut part = || random.random_range(-1.0..1.0f64).powi(5);
+        Matrix::from_fn(channels, channels, |_, _| Complex::new(part(), part()))
+    }
+
+    /// The least that steps of one channel at a time find, ever smaller.
+    fn by_trial(m: &Matrix) -> f64 {
+        let mut logs = DVector::zeros(m.nrows());
+        let mut least = largest_singular_value(m);
+        let mut step = 1.0;
+        while step > 1e-4 {
+            let before = least;
+            for channel in 0..m.nrows() {
+                for way in [-step, step] {
+                    let mut next = logs.clone();
+                    next[channel] += way;
+                    let value = largest_singular_value(&scaled(m, &next));
+                    if value < least {
+                        (least, logs) = (value, next);
+                    }
+                }
+            }
+            if least == before {
+                step /= 2.0;
+            }
+        }
+        least
+    }
+
+    /// mu is at least every |eigenvalue| of Q M with Q a phase per channel, at most the largest
+    /// singular value of every D M D^-1.
+    #[test]
+    fn it_lies_between_what_phases_and_scalings_reach() {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut gained = 1.0_f64;
+        for channels in [3, 4, 6, 9] {
+            for _ in 0..4 {
+                let m = uneven(channels, &mut random);
+                let mu = structured_singular_value(&m);
+                let tried = by_trial(&m);
+                assert!(mu < 1.002 * tried, "{channels}: {mu}, {tried} by trial");
+                for _ in 0..50 {
+                    let phase = DVector::from_fn(channels, |_, _| {
+                        Complex::from_polar(1.0, random.random_range(-3.2..3.2))
+                    });
+                    let turned = Matrix::from_diagonal(&phase) * &m;
+                    let eigenvalues = turned.eigenvalues().unwrap();
+                    let reached = largest(eigenvalues.as_slice());
+                    assert!(
+                        mu > 0.999_999 * reached,
+                        "{channels}: {mu}, {reached} by phases"
+                    );
+                }
+                gained = gained.min(mu / upper_bound(&m));
+            }
+        }
+        assert!(gained < 0.96, "balancing alone does as well: {gained}");
+    }
+
+    #[test]
+    fn a_scaling_of_the_channels_changes_nothing() {
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        for channels in [2, 3, 5, 18] {
+            let m = uneven(channels, &mut random);
+            let logs = DVector::from_fn(channels, |_, _| random.random_range(-2.0..2.0));
+            let mu = [m.clone(), scaled(&m, &logs)].map(|m| structured_singular_value(&m));
+            assert!((mu[0] / mu[1] - 1.0).abs() < 2e-3, "{channels}: {mu:?}");
         }
     }
-    f64::midpoint(near, reach)
 }

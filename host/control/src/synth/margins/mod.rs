@@ -102,10 +102,11 @@ impl OpenLoop {
         let single = (0..channels).map(|i| crossing::single(&grid, i)).collect();
         let identity = DMatrix::identity(channels, channels);
         let half = DMatrix::from_diagonal_element(channels, channels, 0.5.into());
-        let (disk, frequency_rad_s) = grid.peak(&|s| disk::upper_bound(&(s - &half)), &|s| {
-            disk::structured_singular_value(&(s - &half))
-        });
-        let peak = |of: &dyn Fn(&Matrix) -> f64| {
+        let (disk, frequency_rad_s) = grid.peak(
+            |s| disk::upper_bound(&(s - &half)),
+            |s| disk::structured_singular_value(&(s - &half)),
+        );
+        let peak = |of: &(dyn Fn(&Matrix) -> f64 + Sync)| {
             let (value, frequency_rad_s) = grid.peak(of, of);
             Peak {
                 value,

@@ -4,10 +4,14 @@ use super::OpenLoop;
 use crate::synth::eigen::poles;
 use crate::synth::error::DesignError;
 use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Frequencies between the slowest and the fastest, before those near poles.
 const COUNT: usize = 800;
+
+/// A peak between two points is no higher than one of them divided by this.
+const BETWEEN_POINTS: f64 = 0.8;
 
 /// Steps of a golden section: the place is known to 1e-8 of the interval, the value far better.
 const GOLDEN_STEPS: usize = 40;
@@ -67,33 +71,54 @@ impl Grid {
         frequency / self.ts_s.unwrap_or(1.0)
     }
 
-    /// The largest value of a function of S, and its frequency in rad/s. Where to look is seen by
+    /// The largest value of a function of S, and its frequency in rad/s. Where it may be is seen by
     /// `roughly`, which is never below it.
     pub(super) fn peak(
         &self,
-        roughly: &dyn Fn(&Matrix) -> f64,
-        of: &dyn Fn(&Matrix) -> f64,
+        roughly: impl Fn(&Matrix) -> f64 + Sync,
+        of: impl Fn(&Matrix) -> f64 + Sync,
     ) -> (f64, f64) {
-        let values: Vec<f64> = self.points.iter().map(|(_, s)| roughly(s)).collect();
+        let above: Vec<f64> = self.points.par_iter().map(|(_, s)| roughly(s)).collect();
+        let highest = (0..above.len()).max_by(|a, b| above[*a].total_cmp(&above[*b]));
+        let known = highest.map_or(0.0, |at| of(&self.points[at].1));
+        let exact = self.points.par_iter().zip(&above).map(|((_, s), above)| {
+            if *above < BETWEEN_POINTS * known {
+                0.0
+            } else {
+                of(s)
+            }
+        });
+        let values: Vec<f64> = exact.collect();
         let largest = values.iter().copied().fold(0.0, f64::max);
         let last = values.len() - 1;
-        let mut best = (0.0, 0.0);
-        for (at, value) in values.iter().enumerate() {
-            let (low, high) = (at.saturating_sub(1), (at + 1).min(last));
-            // Between points no peak rises by a fifth. Of equal neighbours the first is enough.
-            if *value < 0.8 * largest || *value < values[high] || (at > 0 && *value <= values[low])
-            {
-                continue;
-            }
-            let ends = [self.points[low].0, self.points[high].0];
-            let here = (of(&self.points[at].1), self.points[at].0);
-            let found = golden(ends, &|frequency| of(&self.sensitivity(frequency)));
-            for candidate in [here, found] {
-                if candidate.0 > best.0 {
-                    best = candidate;
-                }
-            }
-        }
+        let about = |at: usize| (at.saturating_sub(1), (at + 1).min(last));
+        // Of equal neighbours the first is enough.
+        let is_peak = |at: &usize| {
+            let (value, (low, high)) = (values[*at], about(*at));
+            value >= BETWEEN_POINTS * largest
+                && value >= values[high]
+                && (*at == 0 || value > values[low])
+        };
+        let places: Vec<usize> = (0..values.len()).filter(is_peak).collect();
+        let found: Vec<[(f64, f64); 2]> = places
+            .into_par_iter()
+            .map(|at| {
+                let (low, high) = about(at);
+                let ends = [self.points[low].0, self.points[high].0];
+                let here = (values[at], self.points[at].0);
+                [
+                    here,
+                    golden(ends, &|frequency| of(&self.sensitivity(frequency))),
+                ]
+            })
+            .collect();
+        let best =
+            found.into_iter().flatten().fold(
+                (0.0, 0.0),
+                |best, own| {
+                    if own.0 > best.0 { own } else { best }
+                },
+            );
         (best.0, self.rad_s(best.1))
     }
 }
