@@ -30,7 +30,7 @@ use super::{Console, ExitStatus, input};
 use handstand::Result;
 use handstand::model::Model;
 use handstand::model::import::{
-    ImportPlan, Imported, JointDrives, Locked, SpacePlan, import, import_whole,
+    ImportPlan, Imported, JointDrives, Locked, SpacePlan, import, import_whole, told,
 };
 use handstand::output::vacant;
 use serde_json::json;
@@ -104,10 +104,10 @@ pub(super) fn seen_from(output: Option<&Path>, robot: &Path) -> String {
 /// Says which joints there are, and what the model has in another way than the file.
 pub(super) fn tell(imported: &Imported, console: &Console) {
     console.say(&format!("joints: {}", imported.joints.join(", ")));
-    for note in &imported.notes {
+    for note in told(&imported.notes) {
         console.say(&format!("note: {note}"));
     }
-    for part in &imported.left_out {
+    for part in told(&imported.left_out) {
         console.say(&format!("not carried: {part}"));
     }
 }

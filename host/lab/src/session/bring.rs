@@ -10,7 +10,7 @@ use crate::log::init::{Draft, RobotDraft, RobotRequest};
 use crate::log::{LogRequest, RawLog};
 use crate::model::Model;
 use crate::model::edit::set_robot_file;
-use crate::model::import::{Imported, JointDrives, Remark, SpacePlan, import_whole};
+use crate::model::import::{Imported, JointDrives, SpacePlan, import_whole, told};
 use std::path::Path;
 
 /// Endings of files that a model is in.
@@ -42,10 +42,6 @@ pub(super) fn check_model(file: &Path, text: &str) -> Result<()> {
     } else {
         Model::parse(text, file).map(drop)
     }
-}
-
-fn not_carried(part: &Remark) -> String {
-    format!("not carried: {part}")
 }
 
 impl LabSession {
@@ -135,7 +131,8 @@ impl LabSession {
                 None => {}
             }
         }
-        note.extend(imported.left_out.iter().map(not_carried));
+        let not_carried = told(&imported.left_out).into_iter();
+        note.extend(not_carried.map(|part| format!("not carried: {part}")));
         Ok(SavedStep {
             note: note.join("; "),
             ..SavedStep::by_hand(imported_title(&file, &imported), imported.toml)

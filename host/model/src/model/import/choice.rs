@@ -1,7 +1,8 @@
 //! Which joints make the chain: those named, or the most hinges in a row.
 
 use super::frame::PARALLEL_RAD;
-use super::tree::{JointMotion, Remark, RobotTree};
+use super::remark::Remark;
+use super::tree::{JointMotion, RobotTree};
 use crate::error::{Error, Result};
 
 /// Whether a body has one joint, which moves so.

@@ -12,6 +12,7 @@ mod log_plan;
 pub(super) mod mjcf;
 mod planar;
 pub(super) mod prefixes;
+mod remark;
 mod servo;
 mod solid;
 pub(super) mod space;
@@ -23,10 +24,10 @@ mod write;
 pub(super) mod xml;
 
 pub use log_plan::{JointPlan, LogPlan, MovingJoint, import_for_log, moving_joints};
+pub use remark::{Remark, told};
 pub use servo::ServoFigures;
 pub use solid::Solid;
 pub use space::Locked;
-pub use tree::Remark;
 
 use crate::dynamics::SpatialTree;
 use crate::error::{Error, Result};

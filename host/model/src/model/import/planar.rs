@@ -4,7 +4,8 @@
 use super::choice::{ancestors, in_one_row, longest, named};
 use super::frame::{Frame, NotPlanar, wrapped};
 use super::groups::ready_to_paste;
-use super::tree::{Fault, FaultyPart, Inertial, JointMotion, Remark, RobotTree, TreeJoint};
+use super::remark::Remark;
+use super::tree::{Fault, FaultyPart, Inertial, JointMotion, RobotTree, TreeJoint};
 use crate::dynamics::SlideAxis;
 use crate::error::{Error, Place, Result};
 use nalgebra::Isometry3;

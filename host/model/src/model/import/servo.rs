@@ -1,7 +1,8 @@
 //! Servos of which nothing is known but what their inputs are.
 
 use super::JointDrives;
-use super::tree::{JointMotion, Remark, TreeDrive, TreeJoint};
+use super::remark::Remark;
+use super::tree::{JointMotion, TreeDrive, TreeJoint};
 use std::fmt;
 
 /// A servo that drives a joint where the robot's file has no drive for its input.

@@ -1,8 +1,7 @@
 //! A robot's file as a tree of links in space: every joint that moves alone, the rest held.
 
-use super::tree::{
-    Fault, FaultyPart, Inertial, JointMotion, Remark, RobotTree, TreeBody, TreeJoint,
-};
+use super::remark::Remark;
+use super::tree::{Fault, FaultyPart, Inertial, JointMotion, RobotTree, TreeBody, TreeJoint};
 use crate::dynamics::{SpatialLink, SpatialTree};
 use crate::error::{Error, Place, Result};
 use crate::model::robot::about_axis;

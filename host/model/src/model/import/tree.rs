@@ -1,54 +1,8 @@
 //! A robot as other simulators describe it: rigid bodies in space, each carried by its parent.
 
+use super::remark::Remark;
 use crate::error::{Error, Place};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
-use std::fmt;
-
-/// A part of a file that the model does not hold, or holds otherwise.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Remark {
-    /// The element, or the quantity: `range`, `mimic`, `tendon`.
-    pub part: String,
-    /// The joint or body, where it is of one.
-    pub name: Option<String>,
-    /// Line of the robot's file, where it stands on one.
-    pub line: Option<usize>,
-    /// Why, and what was taken instead.
-    pub why: String,
-}
-
-impl Remark {
-    pub(super) fn new(part: &str, name: Option<&str>, why: impl Into<String>) -> Self {
-        Remark {
-            part: part.to_string(),
-            name: name.map(str::to_string),
-            line: None,
-            why: why.into(),
-        }
-    }
-
-    /// The same with the line on which it stands.
-    pub(super) fn on(self, line: usize) -> Self {
-        Remark {
-            line: Some(line),
-            ..self
-        }
-    }
-}
-
-impl fmt::Display for Remark {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.part)?;
-        if let Some(name) = &self.name {
-            write!(f, " of {name}")?;
-        }
-        if let Some(line) = self.line {
-            write!(f, ", line {line}")?;
-        }
-        write!(f, ": {}", self.why)
-    }
-}
-
 /// What is wrong with a part of the file: it refuses the robot only where the chain needs it.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::model) struct Fault {

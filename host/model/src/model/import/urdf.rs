@@ -1,8 +1,9 @@
 //! URDF: links and joints by name, poses as `xyz` and `rpy`.
 
 use super::inertia::checked;
+use super::remark::Remark;
 use super::tree::{
-    Fault, FaultyPart, Inertial, JointMotion, Remark, RobotTree, TreeBody, TreeDrive, TreeJoint,
+    Fault, FaultyPart, Inertial, JointMotion, RobotTree, TreeBody, TreeDrive, TreeJoint,
 };
 use super::xml::Element;
 use crate::error::{Error, Result};

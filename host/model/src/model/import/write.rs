@@ -5,7 +5,8 @@ mod in_space;
 pub(super) use in_space::{RobotName, toml_in_space};
 
 use super::planar::{PlanarChain, PlanarLink};
-use super::tree::{Remark, TreeDrive};
+use super::remark::{Remark, told};
+use super::tree::TreeDrive;
 use crate::effects::{Axis, Parameter, named};
 use crate::error::{Error, Place, Result};
 use crate::model::field::POSITIVE;
@@ -15,6 +16,16 @@ use std::path::Path;
 
 /// Heaviest gravity of a model, m/s^2.
 const MOST_GRAVITY_M_S2: f64 = 100.0;
+
+/// Notes, and what is not carried, as comments of a model file.
+fn remarks(notes: &[Remark], left_out: &[Remark]) -> String {
+    let notes = told(notes).into_iter().map(|note| format!("Note: {note}"));
+    let left_out = told(left_out).into_iter();
+    let lines = notes.chain(left_out.map(|part| format!("Not carried: {part}")));
+    lines
+        .map(|line| format!("# {}\n", line.replace(char::is_control, " ")))
+        .collect()
+}
 
 /// The model file; `path` is the robot's.
 ///
@@ -57,11 +68,7 @@ pub(super) fn toml(
          # joint coordinates into them. Columns are named after the joints: mend them for your logs.\n",
         format.to_uppercase()
     );
-    let notes = chain.notes.iter().map(|note| format!("Note: {note}"));
-    let left = left_out.iter().map(|part| format!("Not carried: {part}"));
-    for line in notes.chain(left) {
-        let _ = writeln!(head, "# {}", line.replace(char::is_control, " "));
-    }
+    head += &remarks(&chain.notes, left_out);
     let text = model_toml(
         &plan,
         &(head + "\n"),

@@ -5,7 +5,8 @@ use super::defaults::Attributes;
 use super::option::Options;
 use super::orientation::Compiler;
 use crate::error::{Error, Result};
-use crate::model::import::tree::{Fault, FaultyPart, Remark, TreeDrive, TreeJoint};
+use crate::model::import::remark::Remark;
+use crate::model::import::tree::{Fault, FaultyPart, TreeDrive, TreeJoint};
 use crate::model::import::xml::Element;
 
 /// Attributes that are read, or say nothing of an actuator at a joint without dynamics of its own.

@@ -8,7 +8,8 @@ mod joints;
 mod option;
 pub(in crate::model) mod orientation;
 
-use super::tree::{Fault, FaultyPart, Inertial, Remark, RobotTree, TreeBody};
+use super::remark::Remark;
+use super::tree::{Fault, FaultyPart, Inertial, RobotTree, TreeBody};
 use super::xml::Element;
 use crate::error::{Error, Result};
 use defaults::{Attributes, Defaults};

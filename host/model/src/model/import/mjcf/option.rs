@@ -2,7 +2,7 @@
 
 use super::defaults::Attributes;
 use crate::error::Result;
-use crate::model::import::tree::Remark;
+use crate::model::import::remark::Remark;
 use crate::model::import::xml::Element;
 use nalgebra::Vector3;
 

@@ -1,6 +1,8 @@
 //! A robot in space as a model file.
 
-use super::{drive_figures, fit_table, link_plan, log_table, possible_drive, write_effects};
+use super::{
+    drive_figures, fit_table, link_plan, log_table, possible_drive, remarks, write_effects,
+};
 use crate::dynamics::{SlideAxis, SpatialEquations, SpatialLink, SpatialTree};
 use crate::model::import::LogPlan;
 use crate::model::import::planar::PlanarLink;
@@ -41,11 +43,7 @@ pub(in crate::model::import) fn toml_in_space(
     }
     (found.left_out).extend(links.iter().flat_map(|link| link.joint.left_out.clone()));
     let mut text = head(format, log);
-    let notes = found.notes.iter().map(|note| format!("Note: {note}"));
-    let left_out = (found.left_out.iter()).map(|part| format!("Not carried: {part}"));
-    for line in notes.chain(left_out) {
-        let _ = writeln!(text, "# {}", line.replace(char::is_control, " "));
-    }
+    text += &remarks(&found.notes, &found.left_out);
     let step_s = short_step_s(&found.tree, &links);
     write_rig(&mut text, name, named, step_s, !guessed.is_empty());
     write_bodies(&mut text, found, &links);
