@@ -27,9 +27,6 @@ pub struct Judging {
 /// stabilised.
 pub const STABILISED_SHARE: f64 = 0.95;
 
-/// Runs handed to a thread at a time.
-const BLOCK: usize = 32;
-
 /// Robot `run` of a study: the same in every case of a seed.
 #[derive(Debug)]
 pub(super) struct Drawn {
@@ -99,9 +96,10 @@ pub fn outcomes(
     judging: &Judging,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Outcome>> {
-    let blocks: Vec<usize> = (0..judging.runs).step_by(BLOCK).collect();
+    let at_once = case.closed_loop()?.runs_at_once();
+    let blocks: Vec<usize> = (0..judging.runs).step_by(at_once).collect();
     let block = |&first: &usize| -> Result<Vec<Outcome>> {
-        let runs = first..(first + BLOCK).min(judging.runs);
+        let runs = first..(first + at_once).min(judging.runs);
         let drawn = runs.map(|run| Drawn::new(case, uncertain, judging, run as u64));
         let drawn = drawn.collect::<Result<Vec<_>>>()?;
         let outcomes = run_drawn(&drawn, designed, judging, first);

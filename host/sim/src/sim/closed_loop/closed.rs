@@ -129,6 +129,14 @@ impl ClosedLoop {
         Run::new(self, controller, start, seconds, rng).finish(see)
     }
 
+    /// Runs that a thread takes together: one where runs share no lanes, for they share nothing.
+    pub fn runs_at_once(&self) -> usize {
+        match self.plant.equations {
+            Equations::General => 1,
+            _ => BLOCK,
+        }
+    }
+
     /// Runs from every start, on all cores; run `i` has the random numbers of [`stream`]`(seed,
     /// i)`.
     pub fn run_all(
@@ -145,11 +153,7 @@ impl ClosedLoop {
             seconds,
             rng: stream(seed, index as u64),
         };
-        let at_once = match self.plant.equations {
-            // Runs that share no lanes share nothing: threads take them one by one.
-            Equations::General => 1,
-            _ => BLOCK,
-        };
+        let at_once = self.runs_at_once();
         starts
             .par_chunks(at_once)
             .enumerate()
