@@ -3,15 +3,19 @@
 //! The logs lie in the folder `HANDSTAND_DATA` names. Each row starts from the rig's model in
 //! `host/models` as it is, and says what the diagnosis says; nothing is picked by hand but the
 //! motions held out. The scatter is how far readings lie from the cubic through their neighbours:
-//! no law that moves smoothly leaves much less. Where a row misses what a careful analyst expects,
-//! the last lines say why.
+//! no law that moves smoothly leaves much less. Where the diagnosis ends unexplained, the law that
+//! the library lacks is looked for. Where a row misses what a careful analyst expects, the last
+//! lines say why.
 
 use super::page::Page;
 use super::scatter::scatter_rad;
 use comfy_table::{ContentArrangement, Table, presets::UTF8_HORIZONTAL_ONLY};
-use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, diagnose};
-use handstand::log::{LogRequest, read};
-use handstand::motion::Motion;
+use handstand::diagnose::conventions::ModelFile;
+use handstand::diagnose::{DiagnoseOptions, Diagnosis, FittedEffect, Verdict, diagnose_logs};
+use handstand::discover::{Discovery, MOST_TERMS, discover_logs};
+use handstand::log::{LogRequest, LogSet};
+use handstand::model::JointNames;
+use handstand::report::{diagnosis_json, discovered_terms, discovery_json};
 use handstand::{Error, Model, Result};
 use handstand_measure::measured::Measured;
 use serde_json::{Value, json};
@@ -44,6 +48,8 @@ struct Rig {
 /// What was measured of a rig.
 struct Row {
     diagnosis: Diagnosis,
+    /// What the library lacks, of a rig that ends unexplained.
+    discovery: Option<Discovery>,
     scatter_rad: f64,
 }
 
@@ -182,38 +188,53 @@ fn as_json(rig: &Rig, row: &Row) -> Value {
         "expected": rig.expected,
         "why": rig.why,
         "scatter_rad": row.scatter_rad,
-        "diagnosis": handstand::report::diagnosis_json(&row.diagnosis),
+        "diagnosis": diagnosis_json(&row.diagnosis),
+        "discovery": row.discovery.as_ref().map(discovery_json),
     })
 }
 
 fn judge(rig: &Rig, data: &Path) -> Result<Row> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host/models");
-    let model = Model::load(&root.join(format!("{}.toml", rig.model)))?;
-    let motions = |names: &[&str]| -> Result<Vec<Motion>> {
-        if names.is_empty() {
-            return Ok(Vec::new());
-        }
-        let requests: Vec<LogRequest> = names
-            .iter()
-            .map(|name| data.join(name).to_string_lossy().parse::<LogRequest>())
-            .collect::<std::result::Result<_, Error>>()?;
-        read(&requests, &model.log)
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host/models");
+    let path = models.join(format!("{}.toml", rig.model));
+    let text = std::fs::read_to_string(&path).map_err(|why| Error::file(&path, "read", why))?;
+    let model = Model::parse(&text, &path)?;
+    let requests = |names: &[&str]| -> Result<Vec<LogRequest>> {
+        let of = |name: &&str| data.join(name).to_string_lossy().parse::<LogRequest>();
+        names.iter().map(of).collect()
+    };
+    let logs = LogSet {
+        training: requests(rig.training)?,
+        held_out: requests(rig.held_out)?,
+    };
+    let file = ModelFile {
+        path: &path,
+        text: &text,
     };
     let options = DiagnoseOptions::default();
-    let (training, held_out) = (motions(rig.training)?, motions(rig.held_out)?);
-    let judged = match held_out.as_slice() {
-        [] => &training,
+    let found = diagnose_logs(&model, file, &logs, &options, &|_| {})?;
+    let mut discovery = None;
+    if found.diagnosis.verdict == Verdict::Unexplained {
+        let options = DiagnoseOptions {
+            most_effects: MOST_TERMS,
+            ..options
+        };
+        discovery = Some(discover_logs(&model, file, &logs, &options, &|_| {})?.discovery);
+    }
+    let judged = match found.split.held_out.as_slice() {
+        [] => &found.split.training,
         held_out => held_out,
     };
+    let mut diagnosis = found.diagnosis;
+    // The page names files from their folders on.
+    for folder in [data, &models] {
+        let folder = format!("{}/", folder.display());
+        let lines = diagnosis.next.iter();
+        diagnosis.next = lines.map(|line| line.replace(&folder, "")).collect();
+    }
     Ok(Row {
         scatter_rad: scatter_rad(judged),
-        diagnosis: diagnose(
-            &model,
-            training.clone(),
-            held_out.clone(),
-            &options,
-            &|_| {},
-        ),
+        diagnosis,
+        discovery,
     })
 }
 
@@ -225,7 +246,7 @@ fn tables(rows: &[(&Rig, Row)]) -> Measured {
         .load_preset(UTF8_HORIZONTAL_ONLY)
         .set_content_arrangement(ContentArrangement::Disabled)
         .set_header([
-            "Rig", "Error", "Floor", "Scatter", "On", "Verdict", "Effects", "Expected",
+            "Rig", "Error", "Floor", "Scatter", "On", "Verdict", "Effects", "Law", "Expected",
         ]);
     for (rig, row) in rows {
         let error = &row.diagnosis.error;
@@ -241,6 +262,7 @@ fn tables(rows: &[(&Rig, Row)]) -> Measured {
             if error.held_out { "held out" } else { "fitted" }.to_string(),
             row.diagnosis.verdict.name().to_string(),
             effects(&row.diagnosis),
+            row.discovery.as_ref().map_or(String::new(), law),
             rig.expected.to_string(),
         ]);
     }
@@ -248,10 +270,27 @@ fn tables(rows: &[(&Rig, Row)]) -> Measured {
         let why = rig.why?;
         Some(format!("{}: {why}", rig.name))
     });
+    let next = rows.iter().map(|(rig, row)| {
+        let steps = row.diagnosis.next.join(". ");
+        format!("{}, next: {steps}", rig.name)
+    });
     Measured::default()
         .table(table)
         .line("Error, floor and scatter in mrad, of the slide in mm.")
+        .line("Law: what `discover` finds where the diagnosis ends unexplained.")
         .lines(whys)
+        .lines(next)
+}
+
+/// The law that was found, and what it leaves; or that there is none.
+fn law(discovery: &Discovery) -> String {
+    if !discovery.has_law() {
+        return "none found".to_string();
+    }
+    let mut lines = discovered_terms(discovery, &JointNames::default());
+    let left = 1e3 * discovery.diagnosis.error.after_rad;
+    lines.push(format!("leaves {left:.2}"));
+    lines.join("\n")
 }
 
 /// The effects with their values, a line for each value; then the sets that do as well.
